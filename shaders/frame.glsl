@@ -1,0 +1,10 @@
+// The values of one picture, shared by all shaders; its twin is FrameBlock in render/renderer.cpp.
+layout(std140, binding = 0) uniform Frame {
+    mat4 view, projection;
+    vec4 eye, right, up, forward;   // of the picture; right and up reach its edges at distance 1
+    vec4 sky;                       // the world's up in the camera's axes
+    vec4 picture;                   // width, height, samples, line width in px
+    vec4 domain;                    // size in m, step of the ground's grid (0 = no ground)
+    vec4 particle;                  // radius in m, smallest in px, px a metre at distance 1, fluids
+    vec4 color;                     // lowest value, 1 / span, row of the table, 1 = plain
+} frame;

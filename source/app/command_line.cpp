@@ -1,0 +1,233 @@
+#include "app/command_line.h"
+
+#include "app/compare.h"
+#include "app/headless.h"
+#include "app/scene_choice.h"
+#include "core/error.h"
+#include "scene/json.h"
+#ifdef SPINDRIFT_WINDOW
+#include "app/window/window.h"
+#endif
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+namespace spindrift {
+namespace {
+
+// Options that are short for one knob; ranges and names are the schema's.
+struct Shortcut {
+    const char *option, *path, *placeholder, *help;
+};
+constexpr Shortcut Shortcuts[] = {
+    {"--steps", "compute.steps", "N", "time steps to run"},
+    {"--time", "output.time", "SECONDS", "simulated time to run"},
+    {"--screenshot", "output.screenshot", "FILE", "saves the last state as PNG"},
+    {"--color", "view.color_by", "QUANTITY", "what colours the particles"},
+    {"--frames", "output.frames", "FOLDER", "saves a PNG for each frame"},
+    {"--fps", "output.fps", "RATE", "frames and rows a second of simulated time"},
+    {"--csv", "output.csv", "FILE", "time series as CSV, - = standard output"},
+    {"--json", "output.json", "FILE", "time series as JSON, - = standard output"},
+    {"--backend", "compute.backend", "NAME", "auto, cpu or cuda"},
+    {"--threads", "compute.threads", "N", "CPU threads; all cores without it"},
+};
+
+struct RunOptions {
+    std::string scene;
+    std::vector<KnobChoice> choices;
+    bool quiet = false, printConfig = false;
+};
+
+[[noreturn]] void misuse(const std::string& message) { throw Error(Exit::Usage, message); }
+
+std::vector<std::string> split(const std::string& text, char separator) {
+    std::vector<std::string> parts(1);
+    for (char c : text)
+        if (c == separator)
+            parts.emplace_back();
+        else
+            parts.back() += c;
+    return parts;
+}
+
+// "--size 800x600" and "--camera 30,20,2" set several knobs at once; the first `least` of them are
+// required.
+std::vector<KnobChoice> splitChoices(const std::string& option, const std::string& text,
+                                     char separator, size_t least,
+                                     const std::vector<std::string>& paths, const char* form) {
+    const std::vector<std::string> parts = split(text, separator);
+    if (parts.size() < least || parts.size() > paths.size())
+        misuse(fmt::format("{}: expected {}, found \"{}\"", option, form, text));
+    std::vector<KnobChoice> choices;
+    for (size_t i = 0; i < parts.size(); ++i) choices.push_back({option, paths[i], parts[i]});
+    return choices;
+}
+
+KnobChoice setChoice(const std::string& text) {
+    const size_t equals = text.find('=');
+    if (equals == std::string::npos)
+        misuse(fmt::format("--set: expected path=value, e.g. fluid.viscosity=0.1, found \"{}\"",
+                           text));
+    return {"--set", text.substr(0, equals), text.substr(equals + 1)};
+}
+
+bool given(const char* variable) {
+    const char* value = std::getenv(variable);
+    return value && *value;
+}
+
+// Why no window can be shown; "" when one can be tried.
+std::string whyNoWindow() {
+#ifdef SPINDRIFT_WINDOW
+    // Some drivers of SDL need neither; naming one is a wish to be followed.
+    if (given("DISPLAY") || given("WAYLAND_DISPLAY") || given("SDL_VIDEODRIVER")) return "";
+    return "no display (DISPLAY and WAYLAND_DISPLAY are not set)";
+#else
+    return "this build has no window";
+#endif
+}
+
+int runScene(const RunOptions& options) {
+    Scene scene = chooseScene(options.scene, options.choices);
+    if (options.printConfig) {
+        fmt::print("{}", writeScene(scene));
+        return int(Exit::Ok);
+    }
+    if (const std::string why = whyNoWindow(); !scene.output.headless && !why.empty()) {
+        scene.output.headless = true;
+        if (scene.output.screenshot.empty()) scene.output.screenshot = "spindrift.png";
+        fmt::print(stderr, "spindrift: {}: rendering off screen, to {}\n", why,
+                   scene.output.screenshot);
+    }
+#ifdef SPINDRIFT_WINDOW
+    if (!scene.output.headless) return runWindow(std::move(scene));
+#endif
+    return runHeadless(scene, options.quiet);
+}
+
+// The shortcuts, in the order in which they are applied; --set comes last, so that it overrides any
+// of them.
+void addKnobOptions(CLI::App& command, std::vector<KnobChoice>& choices) {
+    for (const Shortcut& shortcut : Shortcuts)
+        command
+            .add_option_function<std::string>(
+                shortcut.option,
+                [&choices, shortcut](const std::string& value) {
+                    // 0 stands for "all cores" in a file; who types it here means something else.
+                    if (shortcut.option == std::string("--threads") && value == "0")
+                        misuse(
+                            "--threads: 0 threads can't compute; give 1 or more, or leave it out "
+                            "for all cores");
+                    choices.push_back({shortcut.option, shortcut.path, value});
+                },
+                shortcut.help)
+            ->type_name(shortcut.placeholder)
+            ->take_last();
+    const auto addSplit = [&](const char* option, char separator, size_t least,
+                              std::vector<std::string> paths, const char* form, const char* help) {
+        command
+            .add_option_function<std::string>(
+                option,
+                [=, &choices](const std::string& value) {
+                    for (KnobChoice& c : splitChoices(option, value, separator, least, paths, form))
+                        choices.push_back(c);
+                },
+                help)
+            ->type_name(form)
+            ->take_last();
+    };
+    addSplit("--size", 'x', 2, {"window.width", "window.height"}, "WIDTHxHEIGHT",
+             "size of the picture, px");
+    addSplit("--camera", ',', 2, {"view.camera.yaw", "view.camera.pitch", "view.camera.distance"},
+             "YAW,PITCH[,DISTANCE]", "camera about the centre, degrees and m");
+    command.add_flag_callback(
+        "--headless",
+        [&] {
+            choices.push_back({"--headless", "output.headless", "true"});
+        },
+        "runs without a window");
+    command
+        .add_option_function<std::vector<std::string>>(
+            "--set",
+            [&](const std::vector<std::string>& sets) {
+                for (const std::string& set : sets) choices.push_back(setChoice(set));
+            },
+            "sets any knob; may be repeated")
+        ->type_name("PATH=VALUE")
+        ->allow_extra_args(false);
+}
+
+CLI::App* addRun(CLI::App& app, RunOptions& options) {
+    CLI::App* command =
+        app.add_subcommand("run", "runs a scene, in a window or without one; the default");
+    command->add_option("scene", options.scene,
+                        "scene file, or the name of a shipped scene; a dam break without it");
+    addKnobOptions(*command, options.choices);
+    command->add_flag("--print-config", options.printConfig,
+                      "writes the full effective scene and ends");
+    command->add_flag("--quiet", options.quiet, "no progress, no summary");
+    return command;
+}
+
+CLI::App* addCompare(CLI::App& app, CompareOptions& options) {
+    CLI::App* command =
+        app.add_subcommand("compare", "compares two PNG pictures: SSIM and largest difference");
+    command->add_option("a", options.a, "PNG file")->required();
+    command->add_option("b", options.b, "PNG file")->required();
+    command->add_option("--diff", options.diff, "writes the differences as PNG")->type_name("FILE");
+    command
+        ->add_option("--min-ssim", options.minSsim, "different below this similarity; 1 = the same")
+        ->check(CLI::Range(-1.0, 1.0));
+    command
+        ->add_option("--max-difference", options.maxDifference,
+                     "different above this; 0 to 255; 0 without thresholds")
+        ->check(CLI::Range(0, 255));
+    return command;
+}
+
+// Everything that isn't the name of a command or a general option belongs to `run`.
+std::vector<std::string> withCommand(int argc, const char* const* argv, const CLI::App& app) {
+    std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
+    const std::string first = arguments.empty() ? "" : arguments[0];
+    const auto commands = app.get_subcommands(nullptr);
+    const bool named = std::any_of(commands.begin(), commands.end(),
+                                   [&](auto* c) { return c->check_name(first); });
+    const bool general = first == "--help" || first == "-h" || first == "--version";
+    if (!named && !general) arguments.insert(arguments.begin(), "run");
+    std::reverse(arguments.begin(), arguments.end());  // as CLI11 wants them
+    return arguments;
+}
+
+}  // namespace
+
+int runCommandLine(int argc, const char* const* argv) {
+    CLI::App app{"Spindrift, a laboratory for particle fluids", "spindrift"};
+    app.set_version_flag("--version", "spindrift " SPINDRIFT_VERSION);
+    app.require_subcommand(1);
+    RunOptions run;
+    CompareOptions comparison;
+    const CLI::App* runCommand = addRun(app, run);
+    const CLI::App* compareCommand = addCompare(app, comparison);
+    const CLI::App* schemaCommand =
+        app.add_subcommand("schema", "writes the JSON Schema of scene files");
+    app.set_help_flag();
+    app.set_help_all_flag("-h,--help", "this text");
+    app.footer("\n" + knobTable());
+    try {
+        app.parse(withCommand(argc, argv, app));
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == 0) return app.exit(error);  // help, version
+        misuse(fmt::format("{}; `spindrift --help` lists all options", error.what()));
+    }
+    if (*runCommand) return runScene(run);
+    if (*compareCommand) return compare(comparison);
+    if (*schemaCommand) fmt::print("{}", jsonSchema());
+    return int(Exit::Ok);
+}
+
+}  // namespace spindrift

@@ -1,0 +1,176 @@
+#include "app/headless.h"
+
+#include "app/frame.h"
+#include "app/progress.h"
+#include "core/error.h"
+#include "measure/health.h"
+#include "measure/output_file.h"
+#include "measure/time_series.h"
+#include "render/egl_context.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+
+namespace spindrift {
+namespace {
+
+constexpr int DefaultSteps = 600;
+// Steps between two looks at the health of a run that measures nothing else.
+constexpr int HealthInterval = 20;
+
+// Every output is tried before the first step: an hour of computing must not end at a missing
+// folder.
+void requireOutputs(const Output& output) {
+    if (output.csv == "-" && output.json == "-")
+        throw Error(
+            Exit::Output,
+            "output.csv and output.json both want standard output; give one of them a file");
+    for (const std::string& file : {output.screenshot, output.csv, output.json})
+        if (!file.empty() && file != "-") requireWritable(file);
+    if (!output.frames.empty()) requireFolder(output.frames);
+}
+
+// What draws; there only when pictures are asked for.
+struct Pictures {
+    EglContext context;
+    Frame frame;
+    explicit Pictures(const Scene& scene)
+        : frame(scene.window.width, scene.window.height, scene.window.samples) {}
+    void save(Simulation& simulation, const Scene& scene, const std::string& file) {
+        frame.update(simulation, scene);
+        frame.draw(scene);
+        writePng(file, frame.image());
+    }
+};
+
+class HeadlessRun {
+public:
+    HeadlessRun(Scene scene, bool quiet)
+        : scene_(std::move(scene)), quiet_(quiet), progress_(!quiet) {
+        if (scene_.compute.steps == 0 && scene_.output.time == 0)
+            scene_.compute.steps = DefaultSteps;
+        requireOutputs(scene_.output);
+        const Output& output = scene_.output;
+        if (!output.screenshot.empty() || !output.frames.empty()) pictures_.emplace(scene_);
+        sampling_ = !output.frames.empty() || !output.csv.empty() || !output.json.empty();
+        simulation_ = makeSimulation(scene_);
+    }
+
+    int run() {
+        now_ = simulation_->measure();
+        if (sampling_) sample();
+        while (!done() && trouble_.empty()) advance();
+        progress_.clear();
+        finish();
+        if (trouble_.empty()) return int(Exit::Ok);
+        fmt::print(stderr, "spindrift: {}\n", trouble_);
+        return int(Exit::Diverged);
+    }
+
+private:
+    bool done() const {
+        const int steps = scene_.compute.steps;
+        const double time = scene_.output.time;
+        return (steps > 0 && steps_ >= steps) || (time > 0 && now_.time >= time);
+    }
+
+    // One step; then what is due: a look at the run's health, a sample, the progress bar.
+    void advance() {
+        const auto start = std::chrono::steady_clock::now();
+        simulation_->step();
+        stepSeconds_ +=
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        ++steps_;
+        // The time is known from a measurement only, and the ends of run and frame depend on it.
+        if (!sampling_ && scene_.output.time == 0 && steps_ % HealthInterval != 0) return;
+        now_ = simulation_->measure();
+        trouble_ = divergence(scene_, now_);
+        if (sampling_ && trouble_.empty() && now_.time >= nextSample_) sample();
+        if (progress_.due()) progress_.show(share(), describe());
+    }
+
+    double share() const {
+        const int steps = scene_.compute.steps;
+        const double byTime = scene_.output.time > 0 ? now_.time / scene_.output.time : 0;
+        return std::max(byTime, steps > 0 ? double(steps_) / steps : 0);
+    }
+
+    std::string describe() const {
+        return fmt::format("step {}, {:.4g} s, {:.3g} ms/step", steps_, now_.time,
+                           1000 * stepSeconds_ / double(steps_));
+    }
+
+    // A row of the series and a frame of the sequence.
+    void sample() {
+        addRow();
+        if (!scene_.output.frames.empty()) {
+            const auto file = std::filesystem::path(scene_.output.frames) /
+                              fmt::format("frame_{:05}.png", frames_++);
+            pictures_->save(*simulation_, scene_, file.string());
+        }
+        // Of the times k/fps the first one that is still ahead.
+        const double fps = scene_.output.fps;
+        nextSample_ = (std::floor(now_.time * fps * (1 + 1e-9)) + 1) / fps;
+    }
+
+    void addRow() {
+        series_.add(now_, simulation_->times());
+        simulation_->resetTimes();
+        lastRow_ = steps_;
+    }
+
+    void finish() {
+        const Output& output = scene_.output;
+        now_ = simulation_->measure();
+        if (trouble_.empty()) trouble_ = divergence(scene_, now_);
+        if (sampling_ && lastRow_ < steps_) addRow();
+        if (!output.csv.empty()) writeText(output.csv, series_.csv());
+        if (!output.json.empty()) writeText(output.json, series_.json());
+        if (!output.screenshot.empty()) pictures_->save(*simulation_, scene_, output.screenshot);
+        if (!quiet_) summarise();
+    }
+
+    void summarise() const {
+        const Output& output = scene_.output;
+        // Standard output may already belong to the series.
+        std::FILE* out = output.csv == "-" || output.json == "-" ? stderr : stdout;
+        const double ms = steps_ > 0 ? 1000 * stepSeconds_ / double(steps_) : 0;
+        fmt::print(out, "scene          {}\n", scene_.name);
+        fmt::print(out, "device         {}\n", simulation_->deviceName());
+        fmt::print(out, "particles      {} fluid, {} boundary\n", simulation_->fluidCount(),
+                   simulation_->wallCount());
+        fmt::print(out, "steps          {}, {:.3g} ms each\n", steps_, ms);
+        fmt::print(out, "simulated      {:.4g} s, last step {:.3g} s\n", now_.time, now_.dt);
+        fmt::print(out, "energy         {:.4g} J kinetic, {:.4g} J potential\n", now_.kineticEnergy,
+                   now_.potentialEnergy);
+        fmt::print(out, "density error  {:.3g} % mean, {:.3g} % largest\n", 100 * now_.densityError,
+                   100 * now_.maxDensityError);
+        if (!output.screenshot.empty())
+            fmt::print(out, "picture        {}\n",
+                       std::filesystem::absolute(output.screenshot).lexically_normal().string());
+        if (frames_ > 0) fmt::print(out, "frames         {} in {}\n", frames_, output.frames);
+    }
+
+    Scene scene_;
+    bool quiet_, sampling_ = false;
+    Progress progress_;
+    std::optional<Pictures>
+        pictures_;  // before the simulation: no display is noticed before work begins
+    std::unique_ptr<Simulation> simulation_;
+    TimeSeries series_;
+    Measurement now_;
+    std::string trouble_;  // why the run stopped early
+    int64_t steps_ = 0, lastRow_ = 0;
+    int frames_ = 0;
+    double nextSample_ = 0, stepSeconds_ = 0;  // s simulated; s of wall time
+};
+
+}  // namespace
+
+int runHeadless(const Scene& scene, bool quiet) { return HeadlessRun(scene, quiet).run(); }
+
+}  // namespace spindrift

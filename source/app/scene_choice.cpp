@@ -1,0 +1,54 @@
+#include "app/scene_choice.h"
+
+#include "core/error.h"
+#include "scene/check.h"
+#include "scene/json.h"
+#include "scene/suggest.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+namespace spindrift {
+namespace {
+
+namespace fs = std::filesystem;
+}  // namespace
+
+std::vector<std::string> shippedScenes() {
+    std::vector<std::string> names;
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(SPINDRIFT_CONFIGS, none))
+        if (entry.path().extension() == ".json") names.push_back(entry.path().stem().string());
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+std::string findScene(const std::string& name) {
+    std::error_code none;
+    if (fs::exists(name, none)) return name;
+    const fs::path shipped = fs::path(SPINDRIFT_CONFIGS) / name;
+    for (const fs::path& path : {shipped, fs::path(shipped.string() + ".json")})
+        if (fs::is_regular_file(path, none)) return path.string();
+    const std::vector<std::string> names = shippedScenes();
+    const std::string nearest = nearestName(fs::path(name).stem().string(), names);
+    throw Error(Exit::Scene,
+                fmt::format("{}: no such scene file; {}shipped scenes: {}", name,
+                            nearest.empty() ? "" : fmt::format("did you mean {}? ", nearest),
+                            listed(names)));
+}
+
+Scene chooseScene(const std::string& name, const std::vector<KnobChoice>& choices) {
+    const std::string file = name.empty() ? "" : findScene(name);
+    Scene scene = file.empty() ? Scene{} : loadScene(file);
+    for (const KnobChoice& choice : choices) {
+        try {
+            setKnob(scene, choice.path + "=" + choice.value, choice.option);
+        } catch (const Error& error) { throw Error(Exit::Usage, error.what()); }
+    }
+    checkScene(scene, file.empty() ? "the built-in scene" : file);
+    return scene;
+}
+
+}  // namespace spindrift

@@ -1,0 +1,189 @@
+#include "app/window/input.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace spindrift {
+
+const std::vector<Control> controls = {
+    {"Space", "run, pause"},
+    {"Right", "one step"},
+    {"R", "reset"},
+    {"Left drag", "orbit"},
+    {"Middle drag, Shift + left drag", "pan"},
+    {"Wheel", "zoom to the cursor"},
+    {"Home", "first view"},
+    {"Ctrl + drag", "stir the fluid"},
+    {"Ctrl + wheel", "radius of the stirrer"},
+    {"Double click", "pick a particle"},
+    {"1  2  3  4", "plain, velocity, pressure, density"},
+    {"B", "boundary particles"},
+    {"G", "CPU or GPU"},
+    {"Tab", "panel"},
+    {"F", "full screen"},
+    {"F12", "screenshot"},
+    {"H, F1", "this help"},
+    {"Esc", "leave"},
+    {"Drop a JSON file", "load a scene"},
+};
+
+namespace {
+
+void startStir(Ui& ui) {
+    const int x = int(ui.mouseX), y = int(ui.mouseY);
+    const OrbitCamera camera = ui.camera();
+    ui.stirCenter = ui.frame.surfaceAt(x, y).value_or(camera.onPlane(
+        ui.mouseX, ui.mouseY, float(ui.area.width), float(ui.area.height), camera.target));
+    ui.stirBefore = ui.stirCenter;
+    ui.drag = Drag::Stir;
+    ui.stale = true;
+}
+
+void pressButton(Ui& ui, const SDL_MouseButtonEvent& event) {
+    const SDL_Keymod held = SDL_GetModState();
+    const bool left = event.button == SDL_BUTTON_LEFT;
+    if (event.button == SDL_BUTTON_MIDDLE || (left && held & KMOD_SHIFT))
+        ui.drag = Drag::Pan;
+    else if (left && held & KMOD_CTRL)
+        startStir(ui);
+    else if (left && event.clicks == 2)
+        ui.pickAt = {ui.mouseX, ui.mouseY};
+    else if (left)
+        ui.drag = Drag::Orbit;
+}
+
+void releaseButton(Ui& ui) {
+    if (ui.drag == Drag::Stir) ui.player.stir({});
+    if (ui.drag != Drag::None) ui.stale = true;
+    ui.drag = Drag::None;
+}
+
+void dragMouse(Ui& ui, float dx, float dy) {
+    OrbitCamera camera = ui.camera();
+    const float width = float(ui.area.width), height = float(ui.area.height);
+    // Half a turn for a drag over the picture's height.
+    if (ui.drag == Drag::Orbit) camera.orbit(-dx * 180 / height, dy * 180 / height);
+    if (ui.drag == Drag::Pan) camera.pan(dx, dy, height);
+    if (ui.drag == Drag::Orbit || ui.drag == Drag::Pan) ui.moveCamera(camera);
+    if (ui.drag != Drag::Stir) return;
+    ui.stirCenter = camera.onPlane(ui.mouseX, ui.mouseY, width, height, ui.stirCenter);
+    ui.stale = true;
+}
+
+void turnWheel(Ui& ui, float notches) {
+    if (SDL_GetModState() & KMOD_CTRL) {
+        ui.stirRadius *= std::pow(1.15f, notches);
+        ui.stale = true;
+        return;
+    }
+    OrbitCamera camera = ui.camera();
+    const Vec3 anchor = ui.frame.surfaceAt(int(ui.mouseX), int(ui.mouseY))
+                            .value_or(camera.onPlane(ui.mouseX, ui.mouseY, float(ui.area.width),
+                                                     float(ui.area.height), camera.target));
+    const Vec3 size = ui.player.scene.domain.max - ui.player.scene.domain.min;
+    const float wanted = camera.distance * std::pow(0.85f, notches);
+    const float allowed = std::clamp(wanted, 0.02f * length(size), 20 * length(size));
+    camera.zoom(allowed / camera.distance, anchor);
+    ui.moveCamera(camera);
+}
+
+}  // namespace
+
+void pressKey(Ui& ui, SDL_Keycode key) {
+    View& view = ui.player.scene.view;
+    switch (key) {
+        case SDLK_SPACE:
+            ui.toggleRun();
+            break;
+        case SDLK_RIGHT:
+            ui.player.stepOnce();
+            break;
+        case SDLK_r:
+            ui.reset();
+            break;
+        case SDLK_HOME:
+            ui.resetCamera();
+            break;
+        case SDLK_1:
+            ui.colorBy(ColorBy::Plain);
+            break;
+        case SDLK_2:
+            ui.colorBy(ColorBy::Velocity);
+            break;
+        case SDLK_3:
+            ui.colorBy(ColorBy::Pressure);
+            break;
+        case SDLK_4:
+            ui.colorBy(ColorBy::Density);
+            break;
+        case SDLK_b:
+            view.showWalls = !view.showWalls;
+            ui.stale = ui.rewrite = true;
+            break;
+        case SDLK_g:
+            ui.switchBackend();
+            break;
+        case SDLK_f:
+            ui.fullscreen = !ui.fullscreen;
+            break;
+        case SDLK_F12:
+            ui.screenshot = true;
+            break;
+        case SDLK_h:
+        case SDLK_F1:
+            ui.showHelp = !ui.showHelp;
+            break;
+        case SDLK_TAB:
+            ui.showPanel = !ui.showPanel;
+            break;
+        case SDLK_ESCAPE:
+            ui.quit = true;
+            break;
+        default:
+            break;
+    }
+}
+
+void handleEvent(Ui& ui, const SDL_Event& event) {
+    const ImGuiIO& io = ImGui::GetIO();
+    const auto moveTo = [&](int x, int y) {
+        ui.mouseX = float(x) * ui.density - float(ui.area.x);
+        ui.mouseY = float(y) * ui.density - float(ui.area.y);
+    };
+    switch (event.type) {
+        case SDL_QUIT:
+            ui.quit = true;
+            break;
+        case SDL_DROPFILE:
+            ui.load(event.drop.file);
+            SDL_free(event.drop.file);
+            break;
+        case SDL_KEYDOWN:
+            // A key that is held repeats single steps only.
+            if (!io.WantTextInput && (!event.key.repeat || event.key.keysym.sym == SDLK_RIGHT))
+                pressKey(ui, event.key.keysym.sym);
+            break;
+        case SDL_MOUSEBUTTONDOWN:
+            moveTo(event.button.x, event.button.y);
+            if (!io.WantCaptureMouse) pressButton(ui, event.button);
+            break;
+        case SDL_MOUSEBUTTONUP:
+            releaseButton(ui);
+            break;
+        case SDL_MOUSEMOTION: {
+            const float x = ui.mouseX, y = ui.mouseY;
+            moveTo(event.motion.x, event.motion.y);
+            dragMouse(ui, ui.mouseX - x, ui.mouseY - y);
+            break;
+        }
+        case SDL_MOUSEWHEEL:
+            if (!io.WantCaptureMouse) turnWheel(ui, event.wheel.preciseY);
+            break;
+        default:
+            break;
+    }
+}
+
+}  // namespace spindrift

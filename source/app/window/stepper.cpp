@@ -1,0 +1,74 @@
+#include "app/window/stepper.h"
+
+#include "core/error.h"
+
+#include <chrono>
+#include <utility>
+
+namespace spindrift {
+
+Stepper::Stepper(std::unique_ptr<Simulation> simulation)
+    : simulation_(std::move(simulation)),
+      measurement_(simulation_->measure()),
+      thread_([this](std::stop_token stop) { work(stop); }) {}
+
+Stepper::~Stepper() = default;
+
+bool Stepper::busy() const {
+    std::lock_guard lock(mutex_);
+    return busy_;
+}
+
+void Stepper::wait(double seconds) const {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, std::chrono::duration<double>(seconds), [this] { return !busy_; });
+}
+
+void Stepper::start(Batch batch) {
+    {
+        std::lock_guard lock(mutex_);
+        CHECK(!busy_);
+        batch_ = batch;
+        busy_ = true;
+    }
+    changed_.notify_all();
+}
+
+Simulation& Stepper::simulation() {
+    CHECK(!busy());
+    return *simulation_;
+}
+
+const Measurement& Stepper::measurement() {
+    CHECK(!busy());
+    if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+    return measurement_;
+}
+
+void Stepper::work(std::stop_token stop) {
+    std::unique_lock lock(mutex_);
+    while (changed_.wait(lock, stop, [this] { return busy_; })) {
+        lock.unlock();
+        runBatch();
+        lock.lock();
+        busy_ = false;
+        changed_.notify_all();
+        if (stop.stop_requested()) return;
+    }
+}
+
+void Stepper::runBatch() {
+    using Clock = std::chrono::steady_clock;
+    const auto begin = Clock::now();
+    const auto seconds = [&] {
+        return std::chrono::duration<double>(Clock::now() - begin).count();
+    };
+    int64_t done = 0;
+    try {
+        do simulation_->step();
+        while (++done < batch_.steps && seconds() < batch_.seconds);
+        measurement_ = simulation_->measure();
+    } catch (...) { failure_ = std::current_exception(); }
+}
+
+}  // namespace spindrift

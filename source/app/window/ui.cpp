@@ -1,0 +1,124 @@
+#include "app/window/ui.h"
+
+#include "core/error.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+
+namespace spindrift {
+
+double uiTime() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+
+std::string screenshotName(const std::string& folder) {
+    for (int i = 1;; ++i) {
+        const std::string name = fmt::format("spindrift-{:03}.png", i);
+        if (!std::filesystem::exists(std::filesystem::path(folder) / name)) return name;
+    }
+}
+
+OrbitCamera Ui::camera() const {
+    return cameraOf(player.scene, float(area.width) / float(area.height));
+}
+
+void Ui::moveCamera(const OrbitCamera& camera) {
+    keepCamera(player.scene, camera);
+    stale = true;
+}
+
+void Ui::say(const std::string& text, bool error) {
+    message = {text, error, uiTime() + (error ? 12 : 4)};
+}
+
+void Ui::toggleRun() {
+    player.running = !player.running && player.halted.empty();
+    stale = true;
+}
+
+void Ui::reset() {
+    try {
+        player.reset();
+        picked.reset();
+    } catch (const Error& error) { say(error.what(), true); }
+}
+
+void Ui::load(const std::string& file) {
+    try {
+        player.load(file);
+        picked.reset();
+        say("loaded " + std::filesystem::path(file).filename().string());
+    } catch (const Error& error) { say(error.what(), true); }
+}
+
+void Ui::switchBackend() {
+    if (!noGpu.empty()) return say("no GPU to switch to: " + noGpu, true);
+    const bool onGpu = player.scene.compute.backend == Backend::Cuda;
+    try {
+        player.reset(onGpu ? Backend::Cpu : Backend::Cuda);
+        say("started again on the " + std::string(onGpu ? "CPU" : "GPU"));
+    } catch (const Error& error) { say(error.what(), true); }
+}
+
+void Ui::colorBy(ColorBy by) {
+    player.scene.view.colorBy = by;
+    stale = rewrite = true;
+}
+
+void Ui::resetCamera() {
+    player.scene.view.camera = player.initialCamera();
+    stale = true;
+}
+
+void Ui::takeScreenshot() {
+    screenshot = false;
+    try {
+        const std::string name = screenshotName();
+        writePng(name, frame.image());
+        std::printf("%s\n", std::filesystem::absolute(name).c_str());
+        std::fflush(stdout);
+        say("saved " + name);
+    } catch (const Error& error) { say(error.what(), true); }
+}
+
+// The particle in front whose sphere the ray through the mouse meets.
+void Ui::pick() {
+    const Vec3d corner = toDouble(player.scene.domain.min);
+    const Ray ray = camera().ray((*pickAt)[0], (*pickAt)[1], float(area.width), float(area.height));
+    const Vec3d origin = toDouble(ray.origin) + corner, direction = toDouble(ray.direction);
+    const double radius = 0.5 * player.scene.simulation.spacing * player.scene.view.particleScale;
+    double nearest = 1e30;
+    pickAt.reset();
+    picked.reset();
+    for (const Particle& p : player.simulation().particles()) {
+        const Vec3d to = p.position - origin;
+        const double along = dot(to, direction);
+        if (along <= 0 || along >= nearest || dot(to, to) - along * along > radius * radius)
+            continue;
+        nearest = along;
+        picked = p;
+    }
+    stale = true;
+}
+
+void Ui::refreshPicked() {
+    if (!picked) return;
+    const std::vector<Particle> all = player.simulation().particles();
+    if (size_t(picked->id) < all.size()) picked = all[size_t(picked->id)];
+}
+
+std::vector<Ring> Ui::rings() const {
+    std::vector<Ring> marks;
+    if (drag == Drag::Stir) marks.push_back({stirCenter, stirRadius, {1.0f, 0.85f, 0.4f}});
+    if (picked)
+        marks.push_back({toFloat(picked->position) - player.scene.domain.min,
+                         0.9f * player.scene.simulation.spacing,
+                         {1.0f, 0.35f, 0.45f}});
+    return marks;
+}
+
+}  // namespace spindrift

@@ -1,0 +1,81 @@
+#pragma once
+// What the window's parts share: the player, the picture, and what the user is doing.
+#include "app/frame.h"
+#include "app/window/player.h"
+
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace spindrift {
+
+// Where the picture stands in the window, in its pixels from the upper left corner.
+struct Area {
+    int x = 0, y = 0, width = 1, height = 1;
+};
+
+enum class Drag { None, Orbit, Pan, Stir };
+
+// Words over the picture that go away by themselves.
+struct Message {
+    std::string text;
+    bool error = false;
+    double until = 0;
+};
+
+struct Ui {
+    // Needs a current GL context.
+    Ui(Scene scene, int samples) : player(std::move(scene)), frame(1, 1, samples) {}
+
+    Player player;
+    Frame frame;
+    Area area;
+    float scale = 1;    // of panel and text
+    float density = 1;  // the window's pixels / the mouse's units
+
+    bool quit = false, fullscreen = false, screenshot = false;
+    bool showPanel = true, showHelp = false;
+    bool stale = true;    // the picture no longer shows the state
+    bool rewrite = true;  // the vertices no longer show the state
+
+    Drag drag = Drag::None;
+    float mouseX = 0, mouseY = 0;  // px within the area
+    Vec3 stirCenter, stirBefore;   // m, relative to the domain's lower corner
+    float stirRadius = 0.1f;       // m
+
+    std::optional<std::array<float, 2>> pickAt;  // px within the area
+    std::optional<Particle> picked;
+
+    Message message;
+    std::string noGpu;                // why there is no GPU to switch to; empty = there is one
+    std::vector<std::string> scenes;  // that come with the program
+    std::vector<PassTime> times;
+    std::string device, glRenderer;
+    int fluidCount = 0, wallCount = 0;
+    double drawMs = 0;  // of the last picture
+
+    OrbitCamera camera() const;
+    void moveCamera(const OrbitCamera&);
+    void say(const std::string& text, bool error = false);
+
+    // What keys and buttons do.
+    void toggleRun();
+    void reset();
+    void load(const std::string& file);
+    void switchBackend();
+    void colorBy(ColorBy);
+    void resetCamera();
+    void takeScreenshot();
+    void pick();           // the simulation must be at hand
+    void refreshPicked();  // likewise
+    std::vector<Ring> rings() const;
+};
+
+double uiTime();  // s
+
+// "spindrift-001.png", or the first number that's free in this folder.
+std::string screenshotName(const std::string& folder = ".");
+
+}  // namespace spindrift

@@ -1,0 +1,305 @@
+#include "app/window/window.h"
+
+#include "app/scene_choice.h"
+#include "app/window/input.h"
+#include "app/window/panel.h"
+#include "app/window/ui.h"
+#include "core/error.h"
+
+#include <SDL.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <backends/imgui_impl_sdl.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+
+namespace spindrift {
+
+namespace {
+
+[[noreturn]] void noDisplay(const std::string& why) {
+    throw Error(Exit::NoDisplay, "no window: " + why + ": set DISPLAY, or use --headless");
+}
+
+// SDL, the window and its GL context; closed in the opposite order.
+struct Screen {
+    SDL_Window* window = nullptr;
+    SDL_GLContext context = nullptr;
+
+    explicit Screen(const Scene& scene) {
+        if (SDL_Init(SDL_INIT_VIDEO) != 0) noDisplay(SDL_GetError());
+        // Without a screen SDL falls back to drivers that show nothing, and says nothing.
+        const std::string driver = SDL_GetCurrentVideoDriver();
+        if (driver == "offscreen" || driver == "dummy") {
+            SDL_Quit();
+            noDisplay("there is no screen");
+        }
+        SDL_GL_SetAttribute(SDL_GL_CONTEXT_MAJOR_VERSION, 4);
+        SDL_GL_SetAttribute(SDL_GL_CONTEXT_MINOR_VERSION, 5);
+        SDL_GL_SetAttribute(SDL_GL_CONTEXT_PROFILE_MASK, SDL_GL_CONTEXT_PROFILE_CORE);
+        SDL_GL_SetAttribute(SDL_GL_DEPTH_SIZE, 0);
+        SDL_Rect room{0, 0, scene.window.width, scene.window.height};
+        SDL_GetDisplayUsableBounds(0, &room);
+        window = SDL_CreateWindow(
+            (scene.window.title + " - " + scene.name).c_str(), SDL_WINDOWPOS_CENTERED,
+            SDL_WINDOWPOS_CENTERED, std::min(scene.window.width, room.w),
+            std::min(scene.window.height, room.h),
+            SDL_WINDOW_OPENGL | SDL_WINDOW_RESIZABLE | SDL_WINDOW_ALLOW_HIGHDPI);
+        context = window ? SDL_GL_CreateContext(window) : nullptr;
+        if (!context) {
+            const std::string why = SDL_GetError();
+            close();
+            noDisplay("OpenGL 4.5: " + why);
+        }
+        SDL_SetWindowMinimumSize(window, 480, 360);
+        SDL_GL_SetSwapInterval(1);
+    }
+    ~Screen() { close(); }
+    Screen(const Screen&) = delete;
+    Screen& operator=(const Screen&) = delete;
+
+private:
+    void close() {
+        if (context) SDL_GL_DeleteContext(context);
+        if (window) SDL_DestroyWindow(window);
+        SDL_Quit();
+    }
+};
+
+struct Gui {
+    Gui(const Screen& screen, float scale) {
+        ImGui::CreateContext();
+        setUpPanel(scale);
+        ImGui_ImplSDL2_InitForOpenGL(screen.window, screen.context);
+        ImGui_ImplOpenGL3_Init("#version 450");
+    }
+    ~Gui() {
+        ImGui_ImplOpenGL3_Shutdown();
+        ImGui_ImplSDL2_Shutdown();
+        ImGui::DestroyContext();
+    }
+    Gui(const Gui&) = delete;
+    Gui& operator=(const Gui&) = delete;
+};
+
+// The window's pixels for one unit of the mouse.
+float densityOf(SDL_Window* window) {
+    int width = 1, pixels = 1, height = 1;
+    SDL_GetWindowSize(window, &width, &height);
+    SDL_GL_GetDrawableSize(window, &pixels, &height);
+    return float(pixels) / float(std::max(width, 1));
+}
+
+// How much larger than usual things must be to read well: by the system's scale, or by the screen's
+// dots an inch.
+float scaleOf(SDL_Window* window) {
+    const float density = densityOf(window);
+    float dots = 96;
+    if (density > 1 ||
+        SDL_GetDisplayDPI(SDL_GetWindowDisplayIndex(window), nullptr, &dots, nullptr) != 0)
+        return density;
+    constexpr float dense = 120;  // where letters of the usual size begin to be small
+    return std::clamp(std::round(dots / dense * 4) / 4, 1.0f, 3.0f);
+}
+
+// Tried once with a few particles, so that the switch can say beforehand why it's off.
+std::string whyNoGpu() {
+    Scene small;
+    small.simulation.spacing = 0.25f;
+    small.compute.backend = Backend::Cuda;
+    try {
+        makeSimulation(small);
+    } catch (const Error& error) { return error.what(); }
+    return {};
+}
+
+class Desktop {
+public:
+    explicit Desktop(Scene scene)
+        : screen_(scene),
+          samples_((loadGl(), scene.window.samples)),
+          gui_(screen_, scaleOf(screen_.window)),
+          ui_(std::move(scene), samples_) {
+        ui_.scale = scaleOf(screen_.window);
+        ui_.scenes = shippedScenes();
+        ui_.noGpu = whyNoGpu();
+        ui_.glRenderer = glName();
+        const Vec3 size = ui_.player.scene.domain.max - ui_.player.scene.domain.min;
+        ui_.stirRadius = 0.12f * std::min({size.x, size.y, size.z});
+    }
+
+    int run() {
+        while (!ui_.quit) {
+            handleEvents();
+            followWindow();
+            advance();
+            if (ui_.stale) drawPicture();
+            if (drawn_ || settle_ > 0) present();
+            limitRate();
+            if (ui_.screenshot) ui_.takeScreenshot();
+        }
+        return int(Exit::Ok);
+    }
+
+private:
+    // ImGui needs a few frames after an event until hover and focus have settled.
+    static constexpr int settleFrames = 4;
+
+    bool idle() const {
+        return !ui_.player.running && !ui_.player.busy() && !ui_.stale && settle_ <= 0;
+    }
+
+    void handleEvents() {
+        SDL_Event event;
+        bool any = idle() ? SDL_WaitEventTimeout(&event, 200) : SDL_PollEvent(&event);
+        const bool came = any;
+        for (; any; any = SDL_PollEvent(&event)) {
+            ImGui_ImplSDL2_ProcessEvent(&event);
+            handleEvent(ui_, event);
+        }
+        settle_ = came || uiTime() < ui_.message.until ? settleFrames : settle_ - 1;
+    }
+
+    // Size, full screen and panel may have changed: the picture takes what the panel leaves.
+    void followWindow() {
+        setFullScreen();
+        int width = 1, height = 1;
+        SDL_GL_GetDrawableSize(screen_.window, &width, &height);
+        ui_.density = densityOf(screen_.window);
+        const int left = std::min(panelWidth(ui_), width - 1);
+        ui_.area = {left, 0, std::max(width - left, 1), std::max(height, 1)};
+        windowHeight_ = height;
+        if (ui_.frame.width() == ui_.area.width && ui_.frame.height() == ui_.area.height) return;
+        ui_.frame.resize(ui_.area.width, ui_.area.height);
+        ui_.stale = true;
+    }
+
+    void setFullScreen() {
+        const bool full = SDL_GetWindowFlags(screen_.window) & SDL_WINDOW_FULLSCREEN_DESKTOP;
+        if (full == ui_.fullscreen) return;
+        if (!full) SDL_GetWindowSize(screen_.window, &windowed_[0], &windowed_[1]);
+        SDL_SetWindowFullscreen(screen_.window, full ? 0 : SDL_WINDOW_FULLSCREEN_DESKTOP);
+        // Without a window manager nobody else gives the size back.
+        if (full) SDL_SetWindowSize(screen_.window, windowed_[0], windowed_[1]);
+    }
+
+    void advance() {
+        noteStir();
+        bool moved = false;
+        if (!ui_.player.collect(moved)) return;
+        if (generation_ != ui_.player.generation()) startOver();
+        moved_ |= moved;
+        if (ui_.rewrite || (moved_ && timeForPicture())) {
+            ui_.frame.update(ui_.player.simulation(), ui_.player.scene);
+            ui_.refreshPicked();
+            ui_.rewrite = moved_ = false;
+            ui_.stale = true;
+        }
+        if (ui_.pickAt) ui_.pick();
+        readTimes();
+        // While one picture is drawn, the steps for the next are made; a slow picture leaves time
+        // for more.
+        constexpr double least = 0.012, most = 0.050;  // s
+        ui_.player.proceed(std::clamp(ui_.stale ? 1e-3 * ui_.drawMs : 0, least, most));
+    }
+
+    // Where the processor draws, a run that's late gets at least as much of it as the pictures do.
+    bool timeForPicture() const {
+        return !software_ || !ui_.player.running || uiTime() - pictureEnd_ > 1e-3 * ui_.drawMs;
+    }
+
+    void startOver() {
+        generation_ = ui_.player.generation();
+        const Scene& scene = ui_.player.scene;
+        ui_.frame.restartRange();
+        Simulation& simulation = ui_.player.simulation();
+        ui_.device = simulation.deviceName();
+        ui_.fluidCount = simulation.fluidCount();
+        ui_.wallCount = simulation.wallCount();
+        ui_.rewrite = ui_.stale = true;
+        SDL_SetWindowTitle(screen_.window, (scene.window.title + " - " + scene.name).c_str());
+    }
+
+    void noteStir() {
+        const double now = uiTime(), passed = std::max(now - stirTime_, 1e-3);
+        if (ui_.drag != Drag::Stir || ui_.player.busy()) return;
+        const Vec3 velocity = float(1 / passed) * (ui_.stirCenter - ui_.stirBefore);
+        ui_.player.stir({ui_.stirCenter + ui_.player.scene.domain.min, ui_.stirRadius,
+                         passed < 0.5 ? velocity : Vec3{}});
+        ui_.stirBefore = ui_.stirCenter;
+        stirTime_ = now;
+    }
+
+    void readTimes() {
+        if (uiTime() < nextTimes_) return;
+        nextTimes_ = uiTime() + 0.5;
+        ui_.times = ui_.player.simulation().times();
+        ui_.player.simulation().resetTimes();
+    }
+
+    void drawPicture() {
+        const double begin = uiTime();
+        ui_.stale = false;
+        // Smoothing doubles the time of a software picture, so it waits until nothing moves.
+        const bool moving = ui_.player.running || ui_.drag != Drag::None;
+        ui_.frame.setSamples(software_ && moving ? 1 : samples_);
+        ui_.frame.draw(ui_.player.scene, ui_.rings());
+        glFinish();
+        pictureEnd_ = uiTime();
+        ui_.drawMs = 1e3 * (pictureEnd_ - begin);
+        drawn_ = true;
+    }
+
+    void present() {
+        ImGui_ImplOpenGL3_NewFrame();
+        ImGui_ImplSDL2_NewFrame();
+        // The backend asks for the global mouse, which stands still under Xvfb while a button is
+        // held.
+        if (SDL_GetMouseFocus() == screen_.window) {
+            int x = 0, y = 0;
+            SDL_GetMouseState(&x, &y);
+            ImGui::GetIO().MousePos = {float(x), float(y)};
+        }
+        ImGui::NewFrame();
+        showPanel(ui_, windowHeight_);
+        ImGui::Render();
+        glBindFramebuffer(GL_FRAMEBUFFER, 0);
+        ui_.frame.blit(ui_.area.x, windowHeight_ - ui_.area.y - ui_.area.height);
+        ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+        SDL_GL_SwapWindow(screen_.window);
+        drawn_ = false;
+    }
+
+    // Software GL knows no vertical sync. Steps that are done early needn't wait for the next
+    // frame.
+    void limitRate() {
+        constexpr double period = 1.0 / 60;
+        const double rest = period - (uiTime() - frameBegin_);
+        if (rest > 0 && ui_.player.busy())
+            ui_.player.wait(rest);
+        else if (rest > 0)
+            SDL_Delay(Uint32(1e3 * rest));
+        frameBegin_ = uiTime();
+    }
+
+    Screen screen_;
+    int samples_;
+    Gui gui_;
+    Ui ui_;
+    int settle_ = settleFrames, windowHeight_ = 1, generation_ = 0;
+    bool software_ = isSoftwareGl();
+    bool moved_ = false,
+         drawn_ = false;  // since the last update of the vertices; since the last present()
+    std::array<int, 2> windowed_{};  // size before full screen
+    double pictureEnd_ = 0;
+    double frameBegin_ = 0, nextTimes_ = 0, stirTime_ = 0;
+};
+
+}  // namespace
+
+int runWindow(Scene scene) { return Desktop(std::move(scene)).run(); }
+
+}  // namespace spindrift

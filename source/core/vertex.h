@@ -1,0 +1,9 @@
+#pragma once
+// What the simulation writes and the renderer draws: 16 bytes a particle.
+namespace spindrift {
+
+// Position in metres relative to the domain's lower corner; `value` is the scalar that colours it.
+struct Vertex { float x, y, z, value; };
+static_assert(sizeof(Vertex) == 16);
+
+}  // namespace spindrift

@@ -1,0 +1,18 @@
+#pragma once
+// Files that are there whole or not at all.
+#include <string>
+
+namespace spindrift {
+
+// Refuses a path that a file can't be written to: its folder is missing or read-only, or it is a
+// folder itself. Leaves nothing behind. Throws Error(Exit::Output).
+void requireWritable(const std::string& path);
+
+// Makes the folder when it is missing and refuses one that can't be written to. Throws
+// Error(Exit::Output).
+void requireFolder(const std::string& path);
+
+// Writes text beside its target and renames it; "-" is standard output. Throws Error(Exit::Output).
+void writeText(const std::string& path, const std::string& text);
+
+}  // namespace spindrift

@@ -1,0 +1,89 @@
+#include "measure/time_series.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace spindrift {
+namespace {
+
+struct Quantity {
+    const char *name, *unit;
+    double (*of)(const Measurement&);
+};
+
+// The columns, in their order; the passes' times, averages of one run, follow them.
+constexpr Quantity Quantities[] = {
+    {"time", "s", [](const Measurement& m) { return m.time; }},
+    {"step", "", [](const Measurement& m) { return double(m.steps); }},
+    {"dt", "s", [](const Measurement& m) { return m.dt; }},
+    {"kinetic_energy", "J", [](const Measurement& m) { return m.kineticEnergy; }},
+    {"potential_energy", "J", [](const Measurement& m) { return m.potentialEnergy; }},
+    {"momentum_x", "kg m/s", [](const Measurement& m) { return m.momentum.x; }},
+    {"momentum_y", "kg m/s", [](const Measurement& m) { return m.momentum.y; }},
+    {"momentum_z", "kg m/s", [](const Measurement& m) { return m.momentum.z; }},
+    {"center_of_mass_x", "m", [](const Measurement& m) { return m.centerOfMass.x; }},
+    {"center_of_mass_y", "m", [](const Measurement& m) { return m.centerOfMass.y; }},
+    {"center_of_mass_z", "m", [](const Measurement& m) { return m.centerOfMass.z; }},
+    {"mean_density", "kg/m^3", [](const Measurement& m) { return m.meanDensity; }},
+    {"density_error", "1", [](const Measurement& m) { return m.densityError; }},
+    {"max_density_error", "1", [](const Measurement& m) { return m.maxDensityError; }},
+    {"max_speed", "m/s", [](const Measurement& m) { return m.maxSpeed; }},
+};
+
+}  // namespace
+
+void TimeSeries::add(const Measurement& m, const std::vector<PassTime>& passes) {
+    if (columns_.empty())
+        for (const Quantity& q : Quantities) columns_.push_back({q.name, q.unit});
+    for (const PassTime& pass : passes) {
+        const auto named = [&](const Column& c) { return c.name == pass.name; };
+        if (std::none_of(columns_.begin(), columns_.end(), named))
+            columns_.push_back({pass.name, "ms"});
+    }
+    std::vector<double> row(columns_.size());
+    for (size_t i = 0; i < std::size(Quantities); ++i) row[i] = Quantities[i].of(m);
+    for (size_t i = std::size(Quantities); i < row.size(); ++i)
+        for (const PassTime& pass : passes)
+            if (columns_[i].name == pass.name && pass.runs > 0)
+                row[i] = pass.ms / double(pass.runs);
+    rows_.push_back(std::move(row));
+}
+
+double TimeSeries::valueAt(size_t row, size_t column) const {
+    return column < rows_[row].size() ? rows_[row][column] : 0;
+}
+
+std::string TimeSeries::csv() const {
+    std::string text;
+    for (size_t i = 0; i < columns_.size(); ++i) {
+        const Column& c = columns_[i];
+        text += (i ? "," : "") + c.name + (c.unit.empty() ? "" : fmt::format(" [{}]", c.unit));
+    }
+    for (size_t r = 0; r < rows_.size(); ++r)
+        for (size_t i = 0; i < columns_.size(); ++i)
+            text += fmt::format("{}{:.9g}", i ? ',' : '\n', valueAt(r, i));
+    return text + "\n";
+}
+
+std::string TimeSeries::json() const {
+    std::string text = "{\"columns\": [";
+    for (size_t i = 0; i < columns_.size(); ++i)
+        text += fmt::format("{}\n  {{\"name\": \"{}\", \"unit\": \"{}\"}}", i ? "," : "",
+                            columns_[i].name, columns_[i].unit);
+    text += "],\n\"rows\": [";
+    for (size_t r = 0; r < rows_.size(); ++r) {
+        text += r ? ",\n  [" : "\n  [";
+        for (size_t i = 0; i < columns_.size(); ++i) {
+            const double value = valueAt(r, i);
+            text +=
+                (i ? ", " : "") + (std::isfinite(value) ? fmt::format("{:.9g}", value) : "null");
+        }
+        text += "]";
+    }
+    return text + "]}\n";
+}
+
+}  // namespace spindrift

@@ -1,0 +1,33 @@
+#pragma once
+// What a run measured over time, as a table: CSV or JSON, units in the header.
+#include "sim/simulation.h"
+
+#include <string>
+#include <vector>
+
+namespace spindrift {
+
+class TimeSeries {
+public:
+    // Appends a row. `passes` are the times since the last row; a pass seen later than others gets
+    // a column of its own then, 0 where it didn't run.
+    void add(const Measurement&, const std::vector<PassTime>& passes);
+    size_t size() const { return rows_.size(); }
+
+    // "time [s],..." then a line a row. Values that are no numbers are written as nan.
+    std::string csv() const;
+    // {"columns": [{"name": "time", "unit": "s"}, ...], "rows": [[...], ...]}; no numbers become
+    // null.
+    std::string json() const;
+
+private:
+    struct Column {
+        std::string name, unit;
+    };
+    double valueAt(size_t row, size_t column) const;
+
+    std::vector<Column> columns_;
+    std::vector<std::vector<double>> rows_;  // each as long as the columns were when it was added
+};
+
+}  // namespace spindrift

@@ -1,0 +1,85 @@
+#include "render/camera.h"
+
+#include <algorithm>
+
+namespace spindrift {
+
+namespace {
+constexpr float degree = 3.14159265f / 180;
+}
+
+Vec3 OrbitCamera::forward() const {
+    const float cosPitch = std::cos(pitch * degree);
+    return {-cosPitch * std::sin(yaw * degree), -std::sin(pitch * degree),
+            -cosPitch * std::cos(yaw * degree)};
+}
+Vec3 OrbitCamera::right() const { return {std::cos(yaw * degree), 0, -std::sin(yaw * degree)}; }
+Vec3 OrbitCamera::up() const { return cross(right(), forward()); }
+Vec3 OrbitCamera::eye() const { return target - distance * forward(); }
+
+Mat4 OrbitCamera::view() const {
+    const Vec3 axes[3] = {right(), up(), -1.0f * forward()};
+    Mat4 v;
+    for (int row = 0; row < 3; ++row) {
+        for (int k = 0; k < 3; ++k) v.at(row, k) = axes[row][k];
+        v.at(row, 3) = -dot(axes[row], eye());
+    }
+    return v;
+}
+
+Mat4 OrbitCamera::projection(float aspect) const {
+    const float n = nearPlane(), f = farPlane();
+    const float focal = 1 / std::tan(0.5f * fieldOfView * degree);
+    Mat4 p;
+    p.at(0, 0) = focal / aspect;
+    p.at(1, 1) = focal;
+    p.at(2, 2) = (f + n) / (n - f);
+    p.at(2, 3) = 2 * f * n / (n - f);
+    p.at(3, 2) = -1;
+    p.at(3, 3) = 0;
+    return p;
+}
+
+Ray OrbitCamera::ray(float x, float y, float width, float height) const {
+    const float tangent = std::tan(0.5f * fieldOfView * degree);
+    const float u = (2 * x / width - 1) * tangent * width / height;
+    const float v = (1 - 2 * y / height) * tangent;
+    return {eye(), normalized(forward() + u * right() + v * up())};
+}
+
+Vec3 OrbitCamera::onPlane(float x, float y, float width, float height, Vec3 point) const {
+    const Ray r = ray(x, y, width, height);
+    const float along = dot(point - r.origin, forward()) / dot(r.direction, forward());
+    return r.origin + along * r.direction;
+}
+
+void OrbitCamera::orbit(float degreesRight, float degreesUp) {
+    yaw = std::remainder(yaw + degreesRight, 360.0f);
+    pitch = std::clamp(pitch + degreesUp, -89.0f, 89.0f);
+}
+
+void OrbitCamera::pan(float dx, float dy, float height) {
+    const float metresPerPixel = 2 * distance * std::tan(0.5f * fieldOfView * degree) / height;
+    target = target - (dx * metresPerPixel) * right() + (dy * metresPerPixel) * up();
+}
+
+void OrbitCamera::zoom(float factor, Vec3 anchor) {
+    target = anchor + factor * (target - anchor);
+    distance *= factor;
+}
+
+float fitDistance(const OrbitCamera& camera, Vec3 size, float aspect) {
+    const float tangent = std::tan(0.5f * camera.fieldOfView * degree);
+    constexpr float margin = 1.2f;
+    float distance = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const Vec3 p{(corner & 1 ? 0.5f : -0.5f) * size.x, (corner & 2 ? 0.5f : -0.5f) * size.y,
+                     (corner & 4 ? 0.5f : -0.5f) * size.z};
+        const float across =
+            std::max(std::abs(dot(p, camera.right())) / aspect, std::abs(dot(p, camera.up())));
+        distance = std::max(distance, margin * across / tangent - dot(p, camera.forward()));
+    }
+    return distance;
+}
+
+}  // namespace spindrift

@@ -1,0 +1,44 @@
+#pragma once
+// A camera that orbits a target. Lengths in m, angles in degrees; y is up.
+#include "render/matrix.h"
+
+namespace spindrift {
+
+struct Ray {
+    Vec3 origin, direction;
+};  // direction has length 1
+
+struct OrbitCamera {
+    Vec3 target;
+    float yaw = 35, pitch = 20;
+    float distance = 3;
+    float fieldOfView = 40;  // vertical
+
+    Vec3 eye() const;
+    Vec3 forward() const;  // unit vectors of the picture: into it, to its right, up
+    Vec3 right() const;
+    Vec3 up() const;
+
+    Mat4 view() const;
+    // Near and far follow the distance, so that a close look doesn't cut the picture.
+    Mat4 projection(float aspect) const;
+    float nearPlane() const { return 0.01f * distance; }
+    float farPlane() const { return 100 * distance; }
+
+    // A pixel's ray; (0, 0) is the upper left corner of a picture of width x height.
+    Ray ray(float x, float y, float width, float height) const;
+    // Where that ray meets the plane through `point` that faces the camera.
+    Vec3 onPlane(float x, float y, float width, float height, Vec3 point) const;
+
+    void orbit(float degreesRight, float degreesUp);
+    // Moves the target with the picture: a drag by (dx, dy) pixels in a picture `height` pixels
+    // tall.
+    void pan(float dx, float dy, float height);
+    // Shrinks the distance to `factor` of it; `anchor` keeps its place in the picture.
+    void zoom(float factor, Vec3 anchor);
+};
+
+// The distance from which a box of this size, seen around its centre, fills the picture.
+float fitDistance(const OrbitCamera&, Vec3 size, float aspect);
+
+}  // namespace spindrift

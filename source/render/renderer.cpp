@@ -1,0 +1,208 @@
+#include "render/renderer.h"
+
+#include "render/color_map.h"
+#include "render/shader.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace spindrift {
+
+namespace {
+
+using Four = std::array<float, 4>;
+
+// std140 twin of the block in shaders/frame.glsl.
+struct FrameBlock {
+    Mat4 view, projection;
+    Four eye, right, up, forward;  // of the picture; right and up reach its edges at distance 1
+    Four sky;                      // the world's up in the camera's axes
+    Four picture;                  // width, height, samples, line width in px
+    Four domain;                   // size in m, step of the ground's grid
+    Four particle;                 // radius in m, smallest in px, px a metre at distance 1, fluids
+    Four color;                    // lowest value, 1 / span, row of the table, 1 = plain
+};
+
+struct Segment {
+    Four from, to, color;  // from[3]: width in px
+};
+
+constexpr float degree = 3.14159265f / 180;
+
+Four pack(Vec3 v, float w = 0) { return {v.x, v.y, v.z, w}; }
+
+// A round length that divides the floor into about ten cells.
+float gridStep(Vec3 size) {
+    const float cell = std::max(size.x, size.z) / 10;
+    const float power = std::pow(10.0f, std::floor(std::log10(cell)));
+    for (float factor : {1.0f, 2.0f, 5.0f})
+        if (factor * power >= 0.99f * cell) return factor * power;
+    return 10 * power;
+}
+
+float lineWidth(int height) { return std::clamp(float(height) / 700, 1.0f, 5.0f); }
+
+void addBox(std::vector<Segment>& lines, Vec3 size, float width, Four color) {
+    for (int axis = 0; axis < 3; ++axis)
+        for (int corner = 0; corner < 4; ++corner) {
+            Vec3 from;
+            from[(axis + 1) % 3] = corner & 1 ? size[(axis + 1) % 3] : 0;
+            from[(axis + 2) % 3] = corner & 2 ? size[(axis + 2) % 3] : 0;
+            Vec3 to = from;
+            to[axis] = size[axis];
+            lines.push_back({pack(from, width), pack(to), color});
+        }
+}
+
+void addRing(std::vector<Segment>& lines, const Ring& ring, const OrbitCamera& camera,
+             float width) {
+    constexpr int corners = 64;
+    const auto point = [&](int i) {
+        const float angle = 360.0f * float(i) / corners * degree;
+        return ring.center +
+               ring.radius * (std::cos(angle) * camera.right() + std::sin(angle) * camera.up());
+    };
+    for (int i = 0; i < corners; ++i)
+        lines.push_back({pack(point(i), 2 * width), pack(point(i + 1)), pack(ring.color, 0.9f)});
+}
+
+GlTexture uploadTables() {
+    GlTexture texture = makeTexture(GL_TEXTURE_2D);
+    glTextureStorage2D(texture, 1, GL_RGB8, 256, colorMapCount);
+    glTextureParameteri(texture, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTextureParameteri(texture, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    for (int map = 0; map < colorMapCount; ++map)
+        glTextureSubImage2D(texture, 0, 0, map, 256, 1, GL_RGB, GL_UNSIGNED_BYTE,
+                            colorTable(ColorMap(map)).data());
+    return texture;
+}
+
+}  // namespace
+
+Renderer::Renderer(int width, int height, int samples)
+    : samples_(samples),
+      target_(width, height, samples),
+      background_(loadProgram("background")),
+      particles_(loadProgram("particles")),
+      lines_(loadProgram("lines")),
+      empty_(makeVertexArray()),
+      vertices_(makeVertexArray()),
+      frame_(makeBuffer()),
+      segments_(makeBuffer()),
+      tables_(uploadTables()) {
+    glNamedBufferStorage(frame_, sizeof(FrameBlock), nullptr, GL_DYNAMIC_STORAGE_BIT);
+    glEnableVertexArrayAttrib(vertices_, 0);
+    glVertexArrayAttribFormat(vertices_, 0, 4, GL_FLOAT, GL_FALSE, 0);
+    glVertexArrayAttribBinding(vertices_, 0, 0);
+}
+
+void Renderer::resize(int width, int height) { target_.resize(width, height); }
+
+void Renderer::setSamples(int samples) {
+    if (samples == samples_) return;
+    target_ = Framebuffer(width(), height(), samples);
+    samples_ = samples;
+}
+
+void Renderer::draw(const VertexBuffer& vertices, const DrawSettings& settings) {
+    camera_ = settings.camera;
+    uploadFrame(settings);
+    glBindFramebuffer(GL_FRAMEBUFFER, target_.drawing());
+    glViewport(0, 0, width(), height());
+    glDisable(GL_SCISSOR_TEST);
+    glDisable(GL_CULL_FACE);
+    glDepthMask(GL_TRUE);
+    glClearDepth(1);
+    glClear(GL_DEPTH_BUFFER_BIT);
+    drawBackground(settings);
+    drawParticles(vertices, settings);
+    drawLines(settings);
+    target_.resolve();
+    glBindFramebuffer(GL_FRAMEBUFFER, target_.resolved());
+    if (settings.legend && !settings.plain)
+        drawLegend(overlay_, width(), height(), *settings.legend, settings.map, settings.rangeMin,
+                   settings.rangeMax);
+    overlay_.flush(width(), height());
+}
+
+void Renderer::uploadFrame(const DrawSettings& s) {
+    const OrbitCamera& camera = s.camera;
+    const float aspect = float(width()) / float(height());
+    const float tangent = std::tan(0.5f * camera.fieldOfView * degree);
+    const float span = s.rangeMax - s.rangeMin;
+    const FrameBlock block{
+        camera.view(),
+        camera.projection(aspect),
+        pack(camera.eye()),
+        pack(tangent * aspect * camera.right()),
+        pack(tangent * camera.up()),
+        pack(camera.forward()),
+        {0, camera.up().y, -camera.forward().y, 0},
+        {float(width()), float(height()), float(target_.samples()), lineWidth(height())},
+        pack(s.domainSize, s.ground ? gridStep(s.domainSize) : 0),
+        {0.5f * s.diameter, 0.5f * s.minimumPixels, 0.5f * float(height()) / tangent,
+         float(s.fluidCount)},
+        {s.rangeMin, span > 0 ? 1 / span : 0, float(s.map), s.plain ? 1.0f : 0.0f},
+    };
+    glNamedBufferSubData(frame_, 0, sizeof block, &block);
+    glBindBufferBase(GL_UNIFORM_BUFFER, 0, frame_);
+}
+
+// The ground belongs to the background: seen from above everything stands in front of it.
+void Renderer::drawBackground(const DrawSettings&) {
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_BLEND);
+    glUseProgram(background_);
+    glBindVertexArray(empty_);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void Renderer::drawParticles(const VertexBuffer& vertices, const DrawSettings& s) {
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LESS);
+    glEnable(GL_PROGRAM_POINT_SIZE);
+    // Soft edges without blending: the share of covered samples is the edge's opacity.
+    if (target_.samples() > 1) glEnable(GL_SAMPLE_ALPHA_TO_COVERAGE);
+    glUseProgram(particles_);
+    glBindTextureUnit(0, tables_);
+    glVertexArrayVertexBuffer(vertices_, 0, vertices.name(), 0, sizeof(Vertex));
+    glBindVertexArray(vertices_);
+    glDrawArrays(GL_POINTS, 0, s.fluidCount + (s.walls ? s.wallCount : 0));
+    glDisable(GL_SAMPLE_ALPHA_TO_COVERAGE);
+}
+
+void Renderer::drawLines(const DrawSettings& s) {
+    std::vector<Segment> lines;
+    const float width = lineWidth(height());
+    if (s.outline) addBox(lines, s.domainSize, width, {0.62f, 0.70f, 0.82f, 0.5f});
+    const auto edges = GLsizei(lines.size());
+    for (const Ring& ring : s.rings) addRing(lines, ring, s.camera, width);
+    if (lines.empty()) return;
+    glNamedBufferData(segments_, GLsizeiptr(lines.size() * sizeof(Segment)), lines.data(),
+                      GL_STREAM_DRAW);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, segments_);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    glDepthMask(GL_FALSE);
+    glUseProgram(lines_);
+    glBindVertexArray(empty_);
+    glUniform1i(0, 0);
+    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, edges);
+    // Rings are marks, seen through the fluid.
+    glDisable(GL_DEPTH_TEST);
+    glUniform1i(0, edges);
+    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, GLsizei(lines.size()) - edges);
+    glDepthMask(GL_TRUE);
+    glDisable(GL_BLEND);
+}
+
+std::optional<Vec3> Renderer::surfaceAt(int x, int y) const {
+    const float depth = target_.depth(x, y);
+    if (depth >= 1) return std::nullopt;
+    const float n = camera_.nearPlane(), f = camera_.farPlane();
+    const float along = 2 * f * n / (f + n - (2 * depth - 1) * (f - n));
+    return camera_.onPlane(float(x) + 0.5f, float(y) + 0.5f, float(width()), float(height()),
+                           camera_.eye() + along * camera_.forward());
+}
+
+}  // namespace spindrift

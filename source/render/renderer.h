@@ -1,0 +1,74 @@
+#pragma once
+// Draws particles and their surroundings into a framebuffer of its own: a window blits it, headless
+// reads it.
+#include "core/color_map.h"
+#include "core/vec.h"
+#include "render/camera.h"
+#include "render/framebuffer.h"
+#include "render/image.h"
+#include "render/legend.h"
+#include "render/overlay.h"
+#include "render/vertex_buffer.h"
+
+#include <optional>
+#include <vector>
+
+namespace spindrift {
+
+struct Ring {
+    Vec3 center;
+    float radius;
+    Vec3 color;
+};  // m; faces the camera
+
+// One picture. Lengths in m, positions relative to the domain's lower corner.
+struct DrawSettings {
+    OrbitCamera camera;
+    Vec3 domainSize;
+    int fluidCount = 0,
+        wallCount = 0;  // the buffer's first vertices are fluid, the next ones walls
+    bool walls = false, outline = true, ground = true;
+    float diameter = 0.02f;
+    float minimumPixels = 0;  // particles are never drawn smaller than this
+    bool plain = false;       // one colour instead of the table
+    ColorMap map = ColorMap::Viridis;
+    float rangeMin = 0, rangeMax = 1;  // values at the ends of the table
+    std::optional<LegendText> legend;
+    std::vector<Ring> rings;
+};
+
+class Renderer {
+public:
+    // Needs a current context. Throws Error when a shader is missing or broken.
+    Renderer(int width, int height, int samples);
+    void resize(int width, int height);
+    void setSamples(int samples);
+    int width() const { return target_.width(); }
+    int height() const { return target_.height(); }
+
+    void draw(const VertexBuffer&, const DrawSettings&);
+
+    Image image() const { return target_.image(); }
+    // Copies the picture into the window's framebuffer, its lower left corner at (x, y).
+    void blit(int x, int y) const { target_.blit(x, y); }
+    // What the last picture shows at a pixel (from the upper left); nothing where there's only
+    // background.
+    std::optional<Vec3> surfaceAt(int x, int y) const;
+
+private:
+    void uploadFrame(const DrawSettings&);
+    void drawBackground(const DrawSettings&);
+    void drawParticles(const VertexBuffer&, const DrawSettings&);
+    void drawLines(const DrawSettings&);
+
+    int samples_;  // as asked for; the driver may give fewer
+    Framebuffer target_;
+    GlProgram background_, particles_, lines_;
+    GlVertexArray empty_, vertices_;
+    GlBuffer frame_, segments_;
+    GlTexture tables_;
+    Overlay overlay_;
+    OrbitCamera camera_;  // of the last picture
+};
+
+}  // namespace spindrift

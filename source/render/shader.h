@@ -1,0 +1,13 @@
+#pragma once
+#include "render/gl.h"
+
+#include <string>
+
+namespace spindrift {
+
+// Compiles shaders/NAME.vert and NAME.frag; frame.glsl, the values that all shaders share, comes
+// first in both. The folder is $SPINDRIFT_SHADERS, or the one known when the program was built.
+// Throws Error (NoDisplay) with the file's name and the compiler's words.
+GlProgram loadProgram(const std::string& name);
+
+}  // namespace spindrift

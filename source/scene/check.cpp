@@ -1,0 +1,178 @@
+#include "scene/check.h"
+
+#include "core/error.h"
+#include "scene/json.h"
+#include "scene/particles.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <string>
+
+namespace spindrift {
+namespace {
+
+// State, sorted copies, neighbour blocks and vertices of one particle, with room to spare.
+constexpr double BytesPerParticle = 400;
+// Start and fill counters of one grid cell.
+constexpr double BytesPerCell = 16;
+// Particle ids are 32-bit; walls and fluid together stay clear of the limit.
+constexpr int64_t MostParticles = 1'000'000'000;
+constexpr double SmallestSupport = 1.5;
+
+// checkScene puts the file before the path.
+[[noreturn]] void refuse(const std::string& path, const std::string& message) {
+    throw Error(Exit::Scene, fmt::format("{}: {}", path, message));
+}
+
+std::string bodyPath(size_t index) { return fmt::format("fluid.bodies[{}]", index); }
+
+// The body's bounding box, relative to nothing.
+void bounds(const Body& body, Vec3& low, Vec3& high) {
+    low = body.min;
+    high = body.max;
+    if (body.shape == Shape::Block) return;
+    Vec3 half{body.radius, body.radius, body.radius};
+    if (body.shape == Shape::Cylinder) half[int(body.axis)] = body.height / 2;
+    low = body.center - half;
+    high = body.center + half;
+}
+
+void checkDomain(const Scene& scene) {
+    const Vec3 size = scene.domain.max - scene.domain.min;
+    const float R = supportRadius(scene);
+    for (int k = 0; k < 3; ++k) {
+        const char axis = "xyz"[k];
+        if (size[k] <= 0)
+            refuse("domain.max",
+                   fmt::format("{} = {} m is not above domain.min {} = {} m; make it larger", axis,
+                               scene.domain.max[k], axis, scene.domain.min[k]));
+        if (size[k] < R)
+            refuse("domain",
+                   fmt::format(
+                       "{} m along {} is less than the support radius {} m; enlarge the domain or "
+                       "lower simulation.spacing",
+                       size[k], axis, R));
+    }
+    if (scene.simulation.support < SmallestSupport)
+        refuse("simulation.support",
+               fmt::format("{} leaves particles without neighbours; use {} to 6",
+                           scene.simulation.support, SmallestSupport));
+    const bool cube = size.x == size.y && size.y == size.z;
+    if (scene.simulation.formulation == Formulation::Classic && !cube)
+        refuse("domain",
+               "the classic formulation needs a cube; give domain.max - domain.min three equal "
+               "sides, or "
+               "use simulation.formulation wcsph");
+}
+
+void checkBody(const Scene& scene, size_t index) {
+    const Body& body = scene.fluid.bodies[index];
+    Vec3 low, high;
+    bounds(body, low, high);
+    for (int k = 0; k < 3; ++k) {
+        const char axis = "xyz"[k];
+        const float room = scene.domain.max[k] - scene.domain.min[k], extent = high[k] - low[k];
+        const float tolerance = 1e-5f * room;
+        if (extent <= 0)
+            refuse(bodyPath(index) + ".max",
+                   fmt::format("{} = {} m is not above min {} = {} m; make it larger", axis,
+                               high[k], axis, low[k]));
+        if (extent > room + tolerance)
+            refuse(bodyPath(index),
+                   fmt::format("{} m along {} is larger than the domain's {} m; shrink the body or "
+                               "enlarge the domain",
+                               extent, axis, room));
+        if (low[k] < scene.domain.min[k] - tolerance || high[k] > scene.domain.max[k] + tolerance)
+            refuse(
+                bodyPath(index),
+                fmt::format("spans {} to {} m along {}, outside the domain's {} to {} m; move it "
+                            "inside",
+                            low[k], high[k], axis, scene.domain.min[k], scene.domain.max[k]));
+        if (latticePlanes(scene, body, k) == 0)
+            refuse(
+                bodyPath(index),
+                fmt::format("{} m along {} is too thin for a particle; thicken the body or lower "
+                            "simulation.spacing ({} m)",
+                            extent, axis, scene.simulation.spacing));
+    }
+}
+
+// Bytes of memory that a new program can have. A container may be allowed less than the machine
+// has.
+int64_t availableMemory() {
+    int64_t available = int64_t(sysconf(_SC_PHYS_PAGES)) * sysconf(_SC_PAGESIZE);
+    std::ifstream meminfo("/proc/meminfo");
+    for (std::string key, unit; meminfo >> key;) {
+        int64_t kib = 0;
+        if (meminfo >> kib && key == "MemAvailable:") available = std::min(available, kib * 1024);
+        std::getline(meminfo, unit);
+    }
+    std::ifstream limitFile("/sys/fs/cgroup/memory.max"), usedFile("/sys/fs/cgroup/memory.current");
+    int64_t limit = 0, used = 0;  // "max" is no number: no limit
+    if (limitFile >> limit && usedFile >> used)
+        available = std::min(available, std::max<int64_t>(0, limit - used));
+    return available;
+}
+
+void checkCounts(const Scene& scene) {
+    const ParticleCount count = countParticles(scene);
+    const std::string what =
+        fmt::format("{} fluid and {} boundary particles", count.fluid, count.walls);
+    const char* remedy = "raise simulation.spacing or shrink the bodies and the domain";
+    if (count.fluid > MostParticles || count.walls > MostParticles - count.fluid)
+        throw Error(
+            Exit::Memory,
+            fmt::format("simulation.spacing: {} are more than the {} that a run can have; {}", what,
+                        MostParticles, remedy));
+    constexpr double GiB = 1 << 30;
+    const int64_t needed = estimateMemory(scene), available = availableMemory();
+    if (needed > available)
+        throw Error(
+            Exit::Memory,
+            fmt::format("simulation.spacing: {} need about {:.1f} GiB of memory, {:.1f} GiB "
+                        "are free; {}",
+                        what, double(needed) / GiB, double(available) / GiB, remedy));
+    if (scene.compute.threads > count.fluid)
+        refuse("compute.threads",
+               fmt::format("{} threads are more than the {} particles; use 0 for all cores",
+                           scene.compute.threads, count.fluid));
+}
+
+}  // namespace
+
+int64_t estimateMemory(const Scene& scene) {
+    const ParticleCount count = countParticles(scene);
+    const Vec3d size = toDouble(scene.domain.max) - toDouble(scene.domain.min);
+    // Cells are half a spacing long and two wide; in a box that is mostly empty they are made
+    // larger.
+    const double dx = scene.simulation.spacing,
+                 particles = double(count.fluid) + double(count.walls);
+    const double cells =
+        std::min(size.x * size.y * size.z / (2 * dx * dx * dx), std::max(4e6, 16 * particles));
+    const double bytes = BytesPerParticle * particles + BytesPerCell * cells;
+    return int64_t(std::min(bytes, 9e18));
+}
+
+void checkScene(const Scene& scene, const std::string& place) {
+    requireRanges(scene, place);
+    try {
+        checkDomain(scene);
+        if (scene.fluid.bodies.empty())
+            refuse("fluid.bodies", "is empty; add a body of fluid, e.g. {\"shape\": \"block\"}");
+        for (size_t b = 0; b < scene.fluid.bodies.size(); ++b) checkBody(scene, b);
+        if (scene.view.range == RangeMode::Fixed && scene.view.rangeMin >= scene.view.rangeMax)
+            refuse("view.range_max",
+                   fmt::format("{} is not above view.range_min {}; make it larger",
+                               scene.view.rangeMax, scene.view.rangeMin));
+        checkCounts(scene);
+    } catch (const Error& error) {
+        throw Error(error.exit, fmt::format("{}: {}", place, error.what()));
+    }
+}
+
+}  // namespace spindrift

@@ -1,0 +1,130 @@
+// Descriptions of the scene format, made from the schema: JSON Schema and the table in --help.
+#include "scene/json.h"
+#include "scene/read_knobs.h"
+#include "scene/suggest.h"
+
+#include <algorithm>
+
+namespace spindrift {
+namespace {
+
+std::string withUnit(const Knob& knob) {
+    return *knob.unit ? fmt::format("{}, {}", knob.help, knob.unit) : std::string(knob.help);
+}
+
+// What a JSON Schema says of a knob of each type.
+Json typeOf(float, const Knob& k) {
+    return {{"type", "number"}, {"minimum", k.min}, {"maximum", k.max}};
+}
+Json typeOf(int, const Knob& k) {
+    return {{"type", "integer"}, {"minimum", int64_t(k.min)}, {"maximum", int64_t(k.max)}};
+}
+Json typeOf(bool, const Knob&) { return {{"type", "boolean"}}; }
+Json typeOf(const std::string&, const Knob&) { return {{"type", "string"}}; }
+Json typeOf(Vec3, const Knob& k) {
+    return {{"type", "array"}, {"items", typeOf(0.0f, k)}, {"minItems", 3}, {"maxItems", 3}};
+}
+template <class E>
+requires std::is_enum_v<E> Json typeOf(E value, const Knob&) {
+    return {{"enum", enumNames(value)}};
+}
+
+Json emptyObject() {
+    return {{"type", "object"}, {"additionalProperties", false}, {"properties", Json::object()}};
+}
+
+// The properties that hold the last name of `path`, e.g. those of "view.camera" for
+// "view.camera.yaw".
+Json& parentProperties(Json& root, std::string& path) {
+    Json* object = &root;
+    for (size_t dot; (dot = path.find('.')) != std::string::npos; path.erase(0, dot + 1)) {
+        Json& next = (*object)["properties"][path.substr(0, dot)];
+        if (next.is_null()) next = emptyObject();
+        object = &next;
+    }
+    return (*object)["properties"];
+}
+
+// A body's schema allows the keys of all shapes; the reader is stricter.
+Json bodySchema() {
+    Json body = emptyObject();
+    for (Shape shape : {Shape::Block, Shape::Sphere, Shape::Cylinder}) {
+        Body example;
+        example.shape = shape;
+        visitBody(example, "", [&](std::string path, const auto& value, const Knob& knob) {
+            Json& property = body["properties"][path.substr(1)];
+            property = typeOf(value, knob);
+            property["description"] = withUnit(knob);
+        });
+    }
+    return body;
+}
+
+// A value as the table shows it.
+std::string plain(float value) { return fmt::format("{}", value); }
+std::string plain(int value) { return fmt::format("{}", value); }
+std::string plain(bool value) { return value ? "true" : "false"; }
+std::string plain(const std::string& value) { return value.empty() ? "\"\"" : value; }
+std::string plain(Vec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
+template <class E>
+requires std::is_enum_v<E> std::string plain(E value) { return enumNames(value)[size_t(value)]; }
+
+template <class T>
+std::string allowed(const T& value, const Knob& knob) {
+    if constexpr (std::is_enum_v<T>) {
+        const auto names = enumNames(value);
+        return listed({names.begin(), names.end()}, "|");
+    } else if constexpr (std::is_same_v<T, bool>)
+        return "true|false";
+    else if constexpr (std::is_same_v<T, std::string>)
+        return "text";
+    else
+        return allowedRange(knob);
+}
+
+}  // namespace
+
+std::string jsonSchema() {
+    Json root{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+              {"title", "Spindrift scene"}};
+    root.update(emptyObject());
+    root["required"] = {"version"};
+    root["properties"]["$schema"] = {{"type", "string"}};
+    Scene scene;
+    scene.fluid.bodies.clear();
+    visitKnobs(scene, [&](std::string path, const auto& value, const Knob& knob) {
+        Json property = typeOf(value, knob);
+        property["description"] = withUnit(knob) + (knob.live ? "" : " (restarts the scene)");
+        if constexpr (std::is_enum_v<std::decay_t<decltype(value)>>)
+            property["default"] = plain(value);
+        else if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Vec3>)
+            property["default"] = {value.x, value.y, value.z};
+        else
+            property["default"] = value;
+        Json& properties = parentProperties(root, path);
+        properties[path] = property;
+    });
+    root["properties"]["fluid"]["properties"]["bodies"] =
+        Json{{"type", "array"}, {"items", bodySchema()}, {"description", "bodies of fluid"}};
+    return root.dump(2) + "\n";
+}
+
+std::string knobTable() {
+    Scene scene;
+    Body block, cylinder;
+    cylinder.shape = Shape::Cylinder;
+    scene.fluid.bodies = {block, cylinder};  // together they have every knob that a body can have
+    std::string table;
+    std::vector<std::string> seen;
+    visitKnobs(scene, [&](std::string path, const auto& value, const Knob& knob) {
+        if (const size_t bracket = path.find('['); bracket != std::string::npos)
+            path[bracket + 1] = 'i';
+        if (std::find(seen.begin(), seen.end(), path) != seen.end()) return;
+        seen.push_back(path);
+        table += fmt::format("  {:<32} {:<14} {}{}\n{:<50}{}\n", path, plain(value), knob.help,
+                             knob.live ? "" : " *", "", allowed(value, knob));
+    });
+    return "Knobs (path, default, meaning; * = changing it restarts the scene):\n" + table;
+}
+
+}  // namespace spindrift

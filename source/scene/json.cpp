@@ -1,0 +1,163 @@
+#include "scene/json.h"
+
+#include "scene/historical.h"
+#include "scene/read_knobs.h"
+
+#include <filesystem>
+#include <fstream>
+
+namespace spindrift {
+namespace {
+
+// Files beyond this are no scenes (a device, a video): refused before memory is spent on them.
+constexpr size_t LargestFile = 16 << 20;
+
+std::string readText(const std::string& file) {
+    const auto refuse = [&](const char* why) {
+        throw Error(Exit::Scene, fmt::format("{}: {}", file, why));
+    };
+    if (!std::filesystem::exists(file))
+        refuse("no such file; check the path, or name a shipped scene");
+    if (std::filesystem::is_directory(file)) refuse("is a folder; name a scene file in it");
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) refuse("can't be opened; check its permissions");
+    std::string text(LargestFile + 1, '\0');
+    stream.read(text.data(), std::streamsize(text.size()));
+    text.resize(size_t(stream.gcount()));
+    if (text.size() > LargestFile) refuse("is larger than 16 MiB, which no scene file is");
+    return text;
+}
+
+// The list of bodies is as long as the file's, each from the defaults.
+void resizeBodies(const Json& bodies, Scene& scene, const Place& place) {
+    if (!bodies.is_array())
+        place.fail("fluid.bodies",
+                   fmt::format("expected a list of bodies [{{...}}], found {}", shown(bodies)));
+    scene.fluid.bodies.assign(bodies.size(), Body{});
+    for (size_t i = 0; i < bodies.size(); ++i)
+        if (!bodies[i].is_object())
+            place.fail(fmt::format("fluid.bodies[{}]", i),
+                       fmt::format("expected an object {{...}}, found {}", shown(bodies[i])));
+}
+
+void readScene(Json& root, Scene& scene, const Place& place) {
+    if (root.is_object()) root.erase("$schema");  // tells an editor where the schema is
+    if (const Json* bodies = find(root, "fluid.bodies")) {
+        resizeBodies(*bodies, scene, place);
+        if (bodies->empty()) root["fluid"].erase("bodies");  // done, and no knob knows it
+    }
+    readKnobs(root, scene, place);
+}
+
+Json toJson(float value) { return value; }
+Json toJson(int value) { return value; }
+Json toJson(bool value) { return value; }
+Json toJson(const std::string& value) { return value; }
+Json toJson(Vec3 v) { return Json::array({v.x, v.y, v.z}); }
+template <class E>
+requires std::is_enum_v<E> Json toJson(E value) { return enumNames(value)[size_t(value)]; }
+
+// The place in `root` of a path such as "fluid.bodies[0].min", made where it isn't yet.
+Json& placeFor(Json& root, const std::string& path) {
+    std::string pointer = "/" + path;
+    for (char& c : pointer)
+        if (c == '.' || c == '[') c = '/';
+    std::erase(pointer, ']');
+    return root[Json::json_pointer(pointer)];
+}
+
+// Objects over several lines, lists of plain values on one.
+void write(const Json& json, const std::string& indent, std::string& out) {
+    const bool nested =
+        !json.empty() && (json.is_object() || (json.is_array() && json[0].is_structured()));
+    if (!nested) {
+        std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+        if (json.is_array())
+            for (size_t at = 0; (at = text.find(',', at)) != std::string::npos; at += 2)
+                text.insert(at + 1, 1, ' ');
+        out += text;
+        return;
+    }
+    const std::string inner = indent + "    ";
+    out += json.is_object() ? "{" : "[";
+    bool first = true;
+    for (const auto& [key, value] : json.items()) {
+        out += (first ? "\n" : ",\n") + inner;
+        if (json.is_object()) out += fmt::format("\"{}\": ", key);
+        write(value, inner, out);
+        first = false;
+    }
+    out += fmt::format("\n{}{}", indent, json.is_object() ? '}' : ']');
+}
+
+// What follows "=": JSON if it is, numbers with commas as a list, else plain text.
+Json looseValue(const std::string& text) {
+    for (const std::string& attempt : {text, "[" + text + "]"}) try {
+            return parseJson(attempt, "--set");
+        } catch (const Error&) {}
+    return text;
+}
+
+}  // namespace
+
+Scene parseScene(const std::string& text, const std::string& place) {
+    Json root = parseJson(text, place);
+    if (root.is_object() && !root.contains("version")) return readHistorical(root, place);
+    Scene scene;
+    readScene(root, scene, Place{place, ""});
+    return scene;
+}
+
+Scene loadScene(const std::string& file) { return parseScene(readText(file), file); }
+
+std::string writeScene(const Scene& scene) {
+    Json root;
+    visitKnobs(scene, [&](const std::string& path, const auto& value, const Knob&) {
+        placeFor(root, path) = toJson(value);
+    });
+    if (scene.fluid.bodies.empty()) root["fluid"]["bodies"] = Json::array();
+    std::string out;
+    write(root, "", out);
+    return out + "\n";
+}
+
+void setKnob(Scene& scene, const std::string& assignment, const std::string& origin) {
+    const size_t equals = assignment.find('=');
+    const Place place{origin, " (`spindrift --help` lists all knobs)"};
+    if (equals == std::string::npos)
+        place.fail(assignment, "expected path=value, e.g. fluid.viscosity=0.1");
+    const std::string path = assignment.substr(0, equals), text = assignment.substr(equals + 1);
+    const Json value = looseValue(text);
+
+    Scene changed = scene;
+    if (path == "fluid.bodies") {
+        Json root;
+        root["fluid"]["bodies"] = value;
+        readScene(root, changed, place);
+        scene = changed;
+        return;
+    }
+    bool found = false;
+    std::vector<std::string> known;
+    visitKnobs(changed, [&](const std::string& name, auto& knobValue, const Knob& knob) {
+        known.push_back(name);
+        if (name != path) return;
+        found = true;
+        // Text is taken as it stands, so that output.csv=1 is a file name.
+        constexpr bool isText = std::is_same_v<std::decay_t<decltype(knobValue)>, std::string>;
+        assign(knobValue, isText && !value.is_string() ? Json(text) : value, knob, place, path);
+    });
+    if (!found)
+        place.fail(path, fmt::format("unknown knob; {}{}", adviceFor("", path, known), place.hint));
+    scene = changed;
+}
+
+void requireRanges(const Scene& scene, const std::string& place) {
+    visitKnobs(scene, [&](const std::string& path, const auto& value, const Knob& knob) {
+        if (!inRange(value, knob))
+            Place{place, ""}.fail(path, fmt::format("{} is out of range, allowed: {}",
+                                                    shown(toJson(value)), allowedRange(knob)));
+    });
+}
+
+}  // namespace spindrift

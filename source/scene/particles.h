@@ -1,0 +1,33 @@
+#pragma once
+// Shapes of a scene -> particle positions.
+#include "core/vec.h"
+#include "scene/scene.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace spindrift {
+
+// Positions and walls in metres relative to domain.min, velocities in m/s (one for each position).
+struct Placement {
+    std::vector<Vec3> positions, velocities, walls;
+};
+
+// Fills the bodies on lattices and builds the boundary particles, in an order that depends on the
+// scene only.
+Placement placeParticles(const Scene&);
+
+struct ParticleCount {
+    int64_t fluid = 0, walls = 0;
+};
+
+// How many particles placeParticles would make, at most, without making any: exact for blocks that
+// don't overlap and for walls, a few per cent too many for round bodies. Absurd sizes saturate
+// instead of overflowing.
+ParticleCount countParticles(const Scene&);
+
+// Number of lattice planes of a body along an axis (0 x, 1 y, 2 z); 0 means that the body is too
+// thin for a particle.
+int64_t latticePlanes(const Scene&, const Body&, int axis);
+
+}  // namespace spindrift

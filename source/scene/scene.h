@@ -1,0 +1,136 @@
+#pragma once
+// What to simulate, as plain values in SI units. The default of every knob stands here and nowhere else;
+// scene/schema.h gives each its path, unit, range and help.
+#include "core/color_map.h"
+#include "core/vec.h"
+
+#include <string>
+#include <vector>
+
+namespace spindrift {
+
+enum class Backend { Auto, Cpu, Cuda };
+enum class Precision { Float, Double };
+enum class Simd { Auto, Avx512, Avx2, Sse };
+enum class Formulation { Wcsph, Classic };
+enum class Kernel { WendlandC2, CubicSpline };
+enum class EquationOfState { Tait, Linear };
+enum class WallKind { Reflect, Particles };
+enum class TimeMode { Fixed, Cfl };
+enum class Shape { Block, Sphere, Cylinder };
+enum class Axis { X, Y, Z };
+enum class ColorBy { Plain, Velocity, Pressure, Density, Acceleration, Id };
+enum class RangeMode { Frame, Run, Fixed };
+
+// One body of fluid, filled on a lattice. A block reads min and max, a sphere center and radius,
+// a cylinder center, radius, height and axis.
+struct Body {
+    Shape shape = Shape::Block;
+    Vec3 min{0, 0, 0}, max{0.5f, 0.5f, 0.5f};   // m
+    Vec3 center{0.5f, 0.5f, 0.5f};              // m
+    float radius = 0.1f;                        // m
+    float height = 0.2f;                        // m
+    Axis axis = Axis::Y;
+    Vec3 velocity{0, 0, 0};                     // m/s
+};
+
+struct Window {
+    std::string title = "Spindrift";
+    int width = 1280, height = 800;             // logical pixels
+    float pointSize = 0;                        // px: particles are never drawn smaller than this diameter
+    int samples = 4;                            // multisampling, 1 = off
+};
+
+struct Compute {
+    Backend backend = Backend::Auto;
+    Precision precision = Precision::Float;
+    Simd simd = Simd::Auto;
+    int threads = 0;                            // 0 = all cores
+    int steps = 0;                              // 0 = until closed (window) or until output.time
+};
+
+struct SimulationKnobs {
+    Formulation formulation = Formulation::Wcsph;
+    Kernel kernel = Kernel::WendlandC2;
+    float spacing = 0.02f;                      // m, initial distance of particles
+    float support = 2.6f;                       // support radius R / spacing
+    Vec3 gravity{0, -9.81f, 0};                 // m/s^2
+    float accelerationLimit = 0;                // m/s^2, caps the pressure acceleration; 0 = off
+};
+
+struct Domain { Vec3 min{0, 0, 0}, max{1.6f, 0.9f, 0.6f}; };   // m
+
+struct Walls {
+    WallKind kind = WallKind::Particles;
+    float restitution = 0;                      // share of the normal velocity kept on impact with the domain box
+    float friction = 0;                         // share of the tangential velocity lost on impact
+    float margin = 0;                           // the box is this share of its size smaller on each side
+};
+
+struct Fluid {
+    float restDensity = 1000;                   // kg/m^3
+    float particleMass = 0;                     // kg, 0 = rest density x spacing^3
+    float soundSpeed = 0;                       // m/s, 0 = speed_ratio x the expected largest speed
+    float speedRatio = 10;                      // sound speed / expected largest speed
+    float viscosity = 0.001f;                   // Pa s, dynamic (Morris 1997); classic: its own coefficient
+    float artificialViscosity = 0.05f;          // alpha of Monaghan 1992
+    EquationOfState equationOfState = EquationOfState::Tait;
+    int gamma = 7;                              // Tait exponent
+    float stiffness = 0;                        // Pa, pressure scale k of p = k((rho/rho0)^gamma - 1); 0 = rho0 c^2/gamma
+    std::vector<Body> bodies{Body{.max{0.5f, 0.54f, 0.6f}}};
+};
+
+struct TimeKnobs {
+    TimeMode mode = TimeMode::Cfl;
+    float step = 0.0005f;                       // s, used by fixed
+    float cfl = 0.4f;                           // Courant number: dt <= cfl h / (c + |v|), h = R/2
+    float maxStep = 0.01f;                      // s
+};
+
+struct Camera {
+    float yaw = 35, pitch = 20;                 // degrees
+    float distance = 0;                         // m, 0 = fits the domain
+    float fieldOfView = 40;                     // degrees, vertical
+    bool automaticTarget = true;                // looks at the domain's centre
+    Vec3 target{0, 0, 0};                       // m, used when automatic_target is off
+};
+
+struct View {
+    ColorBy colorBy = ColorBy::Velocity;
+    ColorMap colorMap = ColorMap::Viridis;
+    RangeMode range = RangeMode::Run;
+    float rangeMin = 0, rangeMax = 1;           // in the unit of the coloured quantity, used by fixed
+    bool showWalls = false;                     // draws boundary particles
+    bool showOutline = true, showGround = true;
+    float particleScale = 1;                    // drawn diameter / spacing
+    Camera camera;
+};
+
+struct Output {
+    bool headless = false;
+    float time = 0;                             // s, 0 = by steps
+    std::string screenshot;                     // PNG path
+    std::string frames;                         // folder of a PNG sequence
+    float fps = 60;                             // 1/s of simulated time
+    std::string csv, json;                      // time series; "-" = standard output
+};
+
+struct Scene {
+    int version = 2;
+    std::string name = "dam break";
+    Window window;
+    Compute compute;
+    SimulationKnobs simulation;
+    Domain domain;
+    Walls walls;
+    Fluid fluid;
+    TimeKnobs time;
+    View view;
+    Output output;
+};
+
+// Derived values, so that every reader computes them the same way.
+float supportRadius(const Scene&);              // m
+float particleMass(const Scene&);               // kg
+
+}  // namespace spindrift

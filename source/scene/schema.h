@@ -1,0 +1,195 @@
+#pragma once
+// The one list of knobs: path, value, unit, range, help. Everything that reads or shows a knob
+// walks it: JSON reader and writer, --set, the panel, --help, JSON Schema, range checks.
+#include "scene/scene.h"
+
+#include <array>
+#include <string>
+#include <type_traits>
+
+namespace spindrift {
+
+struct Knob {
+    const char* unit;  // "" when the value is a plain number, a name or a switch
+    float min,
+        max;  // both allowed; per component for vectors; no meaning for names, switches and text
+    const char* help;
+    bool live = true;  // a running simulation takes it over at once; otherwise the scene restarts
+};
+inline constexpr bool Restart = false;
+
+// The names of an enumeration's values, in their order.
+constexpr auto enumNames(Backend) { return std::array{"auto", "cpu", "cuda"}; }
+constexpr auto enumNames(Precision) { return std::array{"float", "double"}; }
+constexpr auto enumNames(Simd) { return std::array{"auto", "avx512", "avx2", "sse"}; }
+constexpr auto enumNames(Formulation) { return std::array{"wcsph", "classic"}; }
+constexpr auto enumNames(Kernel) { return std::array{"wendland_c2", "cubic_spline"}; }
+constexpr auto enumNames(EquationOfState) { return std::array{"tait", "linear"}; }
+constexpr auto enumNames(WallKind) { return std::array{"reflect", "particles"}; }
+constexpr auto enumNames(TimeMode) { return std::array{"fixed", "cfl"}; }
+constexpr auto enumNames(Shape) { return std::array{"block", "sphere", "cylinder"}; }
+constexpr auto enumNames(Axis) { return std::array{"x", "y", "z"}; }
+constexpr auto enumNames(ColorBy) {
+    return std::array{"plain", "velocity", "pressure", "density", "acceleration", "id"};
+}
+constexpr auto enumNames(ColorMap) { return std::array{"viridis", "cividis", "turbo", "coolwarm"}; }
+constexpr auto enumNames(RangeMode) { return std::array{"frame", "run", "fixed"}; }
+
+// Visits one body's knobs; `at` is its path, e.g. "fluid.bodies[0]". Which knobs a body has depends
+// on its shape, which is visited first, so that a reader has set it before the others are chosen.
+template <class B, class Visitor>
+void visitBody(B& b, const std::string& at, Visitor&& visit) {
+    visit(at + ".shape", b.shape, Knob{"", 0, 0, "block, sphere or cylinder", Restart});
+    if (b.shape == Shape::Block) {
+        visit(at + ".min", b.min, Knob{"m", -1e4f, 1e4f, "lower corner", Restart});
+        visit(at + ".max", b.max, Knob{"m", -1e4f, 1e4f, "upper corner", Restart});
+    } else {
+        visit(at + ".center", b.center, Knob{"m", -1e4f, 1e4f, "centre", Restart});
+        visit(at + ".radius", b.radius, Knob{"m", 1e-6f, 1e4f, "radius", Restart});
+    }
+    if (b.shape == Shape::Cylinder) {
+        visit(at + ".height", b.height, Knob{"m", 1e-6f, 1e4f, "length along the axis", Restart});
+        visit(at + ".axis", b.axis, Knob{"", 0, 0, "direction of the axis", Restart});
+    }
+    visit(at + ".velocity", b.velocity, Knob{"m/s", -1e3f, 1e3f, "initial velocity", Restart});
+}
+
+namespace schema {
+
+template <class S, class Visitor>
+void visitProgram(S& s, Visitor&& visit) {
+    visit("version", s.version, Knob{"", 2, 2, "layout of the file", Restart});
+    visit("name", s.name, Knob{"", 0, 0, "what the scene is called", Restart});
+
+    visit("window.title", s.window.title, Knob{"", 0, 0, "title of the window", Restart});
+    visit("window.width", s.window.width, Knob{"px", 16, 16384, "width of the picture", Restart});
+    visit("window.height", s.window.height,
+          Knob{"px", 16, 16384, "height of the picture", Restart});
+    visit("window.point_size", s.window.pointSize,
+          Knob{"px", 0, 255, "particles are never drawn smaller than this"});
+    visit("window.samples", s.window.samples,
+          Knob{"", 1, 16, "anti-aliasing samples, 1 = off", Restart});
+
+    visit("compute.backend", s.compute.backend, Knob{"", 0, 0, "where to compute", Restart});
+    visit("compute.precision", s.compute.precision,
+          Knob{"", 0, 0, "of state and arithmetic", Restart});
+    visit("compute.simd", s.compute.simd, Knob{"", 0, 0, "widest CPU instructions used", Restart});
+    visit("compute.threads", s.compute.threads,
+          Knob{"", 0, 4096, "CPU threads, 0 = all cores", Restart});
+    visit("compute.steps", s.compute.steps,
+          Knob{"", 0, 1e9f, "time steps to run, 0 = until closed or until output.time", Restart});
+}
+
+template <class S, class Visitor>
+void visitPhysics(S& s, Visitor&& visit) {
+    auto& sim = s.simulation;
+    visit("simulation.formulation", sim.formulation,
+          Knob{"", 0, 0, "weakly compressible SPH, or the historical classic one", Restart});
+    visit("simulation.kernel", sim.kernel, Knob{"", 0, 0, "smoothing kernel", Restart});
+    visit("simulation.spacing", sim.spacing,
+          Knob{"m", 1e-5f, 10, "initial distance of particles", Restart});
+    visit("simulation.support", sim.support, Knob{"", 1, 6, "support radius / spacing", Restart});
+    visit("simulation.gravity", sim.gravity, Knob{"m/s^2", -100, 100, "gravity"});
+    visit("simulation.acceleration_limit", sim.accelerationLimit,
+          Knob{"m/s^2", 0, 1e6f, "caps the pressure acceleration, 0 = off"});
+
+    visit("domain.min", s.domain.min, Knob{"m", -1e4f, 1e4f, "lower corner of the box", Restart});
+    visit("domain.max", s.domain.max, Knob{"m", -1e4f, 1e4f, "upper corner of the box", Restart});
+
+    visit("walls.kind", s.walls.kind,
+          Knob{"", 0, 0, "reflecting box or boundary particles", Restart});
+    visit("walls.restitution", s.walls.restitution,
+          Knob{"", 0, 1, "share of the normal velocity kept on impact"});
+    visit("walls.friction", s.walls.friction,
+          Knob{"", 0, 1, "share of the tangential velocity lost on impact"});
+    visit("walls.margin", s.walls.margin,
+          Knob{"", 0, 0.4f, "share of its size the box is smaller, each side"});
+
+    visit("time.mode", s.time.mode, Knob{"", 0, 0, "fixed step or the largest stable one"});
+    visit("time.step", s.time.step, Knob{"s", 1e-8f, 1, "time step when fixed"});
+    visit("time.cfl", s.time.cfl, Knob{"", 0.01f, 1, "Courant number: share of the stable step"});
+    visit("time.max_step", s.time.maxStep, Knob{"s", 1e-8f, 1, "longest step the cfl mode takes"});
+}
+
+template <class S, class Visitor>
+void visitFluid(S& s, Visitor&& visit) {
+    auto& f = s.fluid;
+    visit("fluid.rest_density", f.restDensity,
+          Knob{"kg/m^3", 1e-3f, 1e5f, "density at rest", Restart});
+    visit("fluid.particle_mass", f.particleMass,
+          Knob{"kg", 0, 1e6f, "mass of a particle, 0 = rest density x spacing^3", Restart});
+    visit("fluid.sound_speed", f.soundSpeed,
+          Knob{"m/s", 0, 1e4f, "speed of sound, 0 = speed_ratio x the expected speed"});
+    visit("fluid.speed_ratio", f.speedRatio,
+          Knob{"", 1, 100, "speed of sound / largest expected speed"});
+    visit("fluid.viscosity", f.viscosity, Knob{"Pa s", 0, 1000, "dynamic viscosity, 0 = off"});
+    visit("fluid.artificial_viscosity", f.artificialViscosity,
+          Knob{"", 0, 2, "alpha of Monaghan's artificial viscosity, 0 = off"});
+    visit("fluid.equation_of_state", f.equationOfState,
+          Knob{"", 0, 0, "pressure from density", Restart});
+    visit("fluid.gamma", f.gamma, Knob{"", 1, 10, "exponent of the Tait equation"});
+    visit("fluid.stiffness", f.stiffness,
+          Knob{"Pa", 0, 1e10f, "pressure scale, 0 = rest density x sound speed^2 / gamma"});
+    for (size_t b = 0; b < f.bodies.size(); ++b)
+        visitBody(f.bodies[b], "fluid.bodies[" + std::to_string(b) + "]", visit);
+}
+
+template <class S, class Visitor>
+void visitPicture(S& s, Visitor&& visit) {
+    auto& v = s.view;
+    visit("view.color_by", v.colorBy, Knob{"", 0, 0, "what colours the particles"});
+    visit("view.color_map", v.colorMap, Knob{"", 0, 0, "table of colours"});
+    visit("view.range", v.range,
+          Knob{"", 0, 0, "colour range: of each frame, of the run so far, or fixed"});
+    visit("view.range_min", v.rangeMin,
+          Knob{"", -1e9f, 1e9f, "fixed range, lower end, unit of the quantity"});
+    visit("view.range_max", v.rangeMax,
+          Knob{"", -1e9f, 1e9f, "fixed range, upper end, unit of the quantity"});
+    visit("view.show_walls", v.showWalls, Knob{"", 0, 0, "draws the boundary particles"});
+    visit("view.show_outline", v.showOutline, Knob{"", 0, 0, "draws the edges of the box"});
+    visit("view.show_ground", v.showGround, Knob{"", 0, 0, "draws the ground"});
+    visit("view.particle_scale", v.particleScale, Knob{"", 0.05f, 5, "drawn diameter / spacing"});
+
+    auto& c = v.camera;
+    visit("view.camera.yaw", c.yaw, Knob{"degrees", -360, 360, "turn about the vertical"});
+    visit("view.camera.pitch", c.pitch, Knob{"degrees", -90, 90, "height of the view"});
+    visit("view.camera.distance", c.distance,
+          Knob{"m", 0, 1e5f, "distance to the target, 0 = fits the box"});
+    visit("view.camera.field_of_view", c.fieldOfView,
+          Knob{"degrees", 5, 120, "vertical angle of view"});
+    visit("view.camera.automatic_target", c.automaticTarget,
+          Knob{"", 0, 0, "looks at the box's centre"});
+    visit("view.camera.target", c.target,
+          Knob{"m", -1e4f, 1e4f, "point looked at when not automatic"});
+}
+
+template <class S, class Visitor>
+void visitOutput(S& s, Visitor&& visit) {
+    auto& o = s.output;
+    visit("output.headless", o.headless, Knob{"", 0, 0, "runs without a window", Restart});
+    visit("output.time", o.time,
+          Knob{"s", 0, 1e6f, "simulated time to run, 0 = by compute.steps", Restart});
+    visit("output.screenshot", o.screenshot, Knob{"", 0, 0, "PNG of the last state", Restart});
+    visit("output.frames", o.frames, Knob{"", 0, 0, "folder for a sequence of PNGs", Restart});
+    visit("output.fps", o.fps,
+          Knob{"1/s", 0.01f, 1e5f, "frames a second of simulated time", Restart});
+    visit("output.csv", o.csv, Knob{"", 0, 0, "CSV time series, - = standard output", Restart});
+    visit("output.json", o.json, Knob{"", 0, 0, "JSON time series, - = standard output", Restart});
+}
+
+}  // namespace schema
+
+// Calls visit(path, value, knob) for every knob of the scene. `visit` is a callable for float, int,
+// bool, std::string, Vec3 and every enumeration above; values are references into the scene (const
+// when it is).
+template <class S, class Visitor>
+requires std::is_same_v<std::remove_const_t<S>, Scene>
+void visitKnobs(S& scene, Visitor&& visit) {
+    schema::visitProgram(scene, visit);
+    schema::visitPhysics(scene, visit);
+    schema::visitFluid(scene, visit);
+    schema::visitPicture(scene, visit);
+    schema::visitOutput(scene, visit);
+}
+
+}  // namespace spindrift

@@ -1,0 +1,58 @@
+// The one neighbour loop. f(pair, j) is called with every particle j of the other set nearer than the support
+// radius R, the particle itself included when it is of the same set; with SIMD also with some that are further
+// away, which kernels turn into zeros.
+#if defined(SPINDRIFT_SIM_NEIGHBOURS_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SPINDRIFT_SIM_NEIGHBOURS_H
+#undef SPINDRIFT_SIM_NEIGHBOURS_H
+#else
+#define SPINDRIFT_SIM_NEIGHBOURS_H
+#endif
+
+#include "sim/view.h"
+
+namespace spindrift::LANES {
+
+template <class R> struct Pair {
+    Vector<R> r;             // x_i - x_j, m
+    R distance2;             // m^2
+    R q;                     // distance / R
+    R inverseDistance2;      // 1 / (distance^2 + eta^2), finite everywhere
+};
+
+template <class R> HD inline Pair<R> makePair(const Constants& c, Vector<R> xi, Vector<R> xj) {
+    const Vector<R> r = xi - xj;
+    const R d2 = dot(r, r);
+    return {r, d2, squareRoot(d2 * R(c.inverseSupport2)), R(1) / (d2 + R(c.eta2))};
+}
+
+#ifdef SPINDRIFT_SIMD
+template <class F>
+HD inline void forNeighbours(const View& v, const Neighbourhood& near, Group i, Vector<Wide> xi, const F& f) {
+    const ClusterList list = near.lists[i.first / clusterSize];
+    for (uint32_t k = 0; k < list.count; ++k) {
+        const Four j{int(list.clusters[k]) * clusterSize};
+        f(makePair(v.c, xi, load(near.position, j)), j);
+    }
+}
+#else
+template <class F>
+HD inline void forNeighbours(const View& v, const Neighbourhood& near, int, Vector<real> xi, const F& f) {
+    const Grid& g = v.grid;
+    const real R = v.c.support;
+    const int x0 = g.cellX(xi.x - R), x1 = g.cellX(xi.x + R);
+    const int y0 = g.rowY(xi.y - R), y1 = g.rowY(xi.y + R);
+    const int z0 = g.rowZ(xi.z - R), z1 = g.rowZ(xi.z + R);
+    for (int z = z0; z <= z1; ++z)
+        for (int y = y0; y <= y1; ++y) {
+            const int row = (z * g.cells.y + y) * g.cells.x;
+            for (int j = near.cellStart[row + x0], end = near.cellStart[row + x1 + 1]; j < end; ++j) {
+                const Pair<real> pair = makePair(v.c, xi, load(near.position, j));
+                if (pair.distance2 < v.c.support2) f(pair, j);
+            }
+        }
+}
+#endif
+
+}  // namespace spindrift::LANES
+
+#endif

@@ -1,0 +1,84 @@
+// What leaves the device: vertices for the screen, sums for the measurements.
+#if defined(SPINDRIFT_SIM_OUTPUT_PASSES_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SPINDRIFT_SIM_OUTPUT_PASSES_H
+#undef SPINDRIFT_SIM_OUTPUT_PASSES_H
+#else
+#define SPINDRIFT_SIM_OUTPUT_PASSES_H
+#endif
+
+#include "core/vertex.h"
+#include "sim/view.h"
+
+namespace spindrift::LANES {
+
+HD inline real magnitude(Vector<real> a) { return squareRoot(dot(a, a)); }
+HD inline real pressureOf(const Particles& p, int i) {
+    return load(p.pressureTerm, i) * load(p.density, i) * load(p.density, i);
+}
+
+// A colour mode: the scalar that a vertex carries.
+struct PlainValue { HD static real of(const Particles&, int) { return 0; } };
+struct SpeedValue { HD static real of(const Particles& p, int i) { return magnitude(load(p.velocity, i)); } };
+struct AccelerationValue { HD static real of(const Particles& p, int i) { return magnitude(load(p.acceleration, i)); } };
+struct DensityValue { HD static real of(const Particles& p, int i) { return load(p.density, i); } };
+struct PressureValue { HD static real of(const Particles& p, int i) { return pressureOf(p, i); } };
+struct IdValue { HD static real of(const Particles& p, int i) { return real(p.id[i]); } };
+
+struct ValueRange {
+    float low = 3.4e38f, high = -3.4e38f;
+    HD_OUT void add(const ValueRange& o) {
+        low = o.low < low ? o.low : low;
+        high = o.high > high ? o.high : high;
+    }
+};
+
+// out[id - firstId] = position and value of each particle; the range of the values comes with it.
+template <class Value> struct WriteVertices {
+    Particles p;
+    Vertex* out;
+    HD void addTo(ValueRange& range, int i) const {
+        if (p.id[i] < 0) return;
+        const Vector<real> x = load(p.position, i);
+        const float value = float(Value::of(p, i));
+        out[p.id[i]] = {float(x.x), float(x.y), float(x.z), value};
+        range.add({value, value});
+    }
+};
+
+// Sums over the fluid, in double precision.
+struct Totals {
+    double speed2 = 0, density = 0, compression = 0;
+    double velocity[3] = {0, 0, 0}, position[3] = {0, 0, 0};
+    double maxSpeed2 = 0, maxDensity = 0;
+    int64_t notFinite = 0;
+    HD_OUT void add(const Totals& o) {
+        speed2 += o.speed2, density += o.density, compression += o.compression;
+        for (int k = 0; k < 3; ++k) velocity[k] += o.velocity[k], position[k] += o.position[k];
+        maxSpeed2 = o.maxSpeed2 > maxSpeed2 ? o.maxSpeed2 : maxSpeed2;
+        maxDensity = o.maxDensity > maxDensity ? o.maxDensity : maxDensity;
+        notFinite += o.notFinite;
+    }
+};
+struct SumUp {
+    Particles p;
+    double restDensity;
+    HD void addTo(Totals& t, int i) const {
+        if (p.id[i] < 0) return;
+        const Vector<real> x = load(p.position, i), u = load(p.velocity, i);
+        const double rho = load(p.density, i), excess = rho / restDensity - 1;
+        const double ux = u.x, uy = u.y, uz = u.z, speed2 = ux * ux + uy * uy + uz * uz;
+        Totals one;
+        one.speed2 = one.maxSpeed2 = speed2;
+        one.density = one.maxDensity = rho;
+        one.compression = excess > 0 ? excess : 0;
+        one.velocity[0] = ux, one.velocity[1] = uy, one.velocity[2] = uz;
+        one.position[0] = x.x, one.position[1] = x.y, one.position[2] = x.z;
+        const double sum = speed2 + rho + double(x.x) + double(x.y) + double(x.z);
+        one.notFinite = sum - sum == 0 ? 0 : 1;
+        t.add(one);
+    }
+};
+
+}  // namespace spindrift::LANES
+
+#endif

@@ -1,0 +1,110 @@
+// Owns the buffers of one kind of particles and keeps them sorted by cell.
+#if defined(SPINDRIFT_SIM_PARTICLE_SET_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SPINDRIFT_SIM_PARTICLE_SET_H
+#undef SPINDRIFT_SIM_PARTICLE_SET_H
+#else
+#define SPINDRIFT_SIM_PARTICLE_SET_H
+#endif
+
+#include "device/buffer.h"
+#include "sim/output_passes.h"
+#include "sim/passes.h"
+#include "sim/simulation.h"
+
+#include <vector>
+
+namespace spindrift::LANES {
+
+template <class Device> class ParticleSet {
+public:
+    explicit ParticleSet(Device& device) : device_(device) {}
+
+    int slots() const { return slots_; }
+    const int* cellStart() const { return cellStart_.data(); }
+
+    Particles view() const {
+        return {slots_, id_.data(), {position_.data()}, {velocity_.data()}, {acceleration_.data()},
+                {density_.data()}, {inverseDensity_.data()}, {pressureTerm_.data()}, {mass_.data()}};
+    }
+
+    // Takes over particles with ids firstId, firstId + 1, ...; no velocities means at rest.
+    void upload(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities, int firstId) {
+        const int n = int(positions.size());
+        resize((n + clusterSize - 1) / clusterSize * clusterSize);
+        std::vector<real> x(vectorSize(slots_)), u(vectorSize(slots_));
+        std::vector<int> id(slots_, -1);
+        for (int i = 0; i < n; ++i) {
+            id[i] = firstId + i;
+            for (int k = 0; k < 3; ++k) {
+                x[vectorOffset(i, k)] = positions[i][k];
+                u[vectorOffset(i, k)] = velocities.empty() ? 0 : velocities[i][k];
+            }
+        }
+        device_.upload(position_.data(), x.data(), x.size());
+        device_.upload(velocity_.data(), u.data(), u.size());
+        device_.upload(id_.data(), id.data(), id.size());
+    }
+
+    // Particles of one cell end up beside each other, cells of one row too.
+    void sort(const Grid& grid) {
+        const int rows = grid.cells.y * grid.cells.z;
+        key_.resize(slots_);
+        cellStart_.resize(size_t(rows) * grid.cells.x + 1);
+        device_.forEach(slots_, FindCell{view(), grid, key_.data()});
+        const int slots = device_.sortByCell(slots_, key_.data(), rows, grid.cells.x, clusterSize,
+                                             cellStart_.data(), order_);
+        sortedId_.resize(slots);
+        sortedPosition_.resize(vectorSize(slots));
+        sortedVelocity_.resize(vectorSize(slots));
+        Particles sorted = view();
+        sorted.id = sortedId_.data();
+        sorted.position = {sortedPosition_.data()};
+        sorted.velocity = {sortedVelocity_.data()};
+        device_.forEach(slots, Reorder{order_.data(), view(), sorted});
+        id_.swap(sortedId_);
+        position_.swap(sortedPosition_);
+        velocity_.swap(sortedVelocity_);
+        resize(slots);
+    }
+
+    // In the order of ids, in world coordinates.
+    std::vector<Particle> download(int count, Vec3 origin) const {
+        std::vector<int> id = copy(id_);
+        std::vector<real> x = copy(position_), u = copy(velocity_), a = copy(acceleration_);
+        std::vector<real> rho = copy(density_), term = copy(pressureTerm_), inverse = copy(inverseDensity_);
+        const Particles host{slots_, id.data(), {x.data()}, {u.data()}, {a.data()},
+                             {rho.data()}, {inverse.data()}, {term.data()}, {nullptr}};
+        auto toVec3d = [](Vector<real> v) { return Vec3d{double(v.x), double(v.y), double(v.z)}; };
+        std::vector<Particle> out(count);
+        for (int i = 0; i < slots_; ++i) {
+            if (id[i] < 0) continue;
+            out[id[i]] = {id[i], toVec3d(load(host.position, i)) + toDouble(origin), toVec3d(load(host.velocity, i)),
+                          toVec3d(load(host.acceleration, i)), double(rho[i]), double(pressureOf(host, i))};
+        }
+        return out;
+    }
+
+private:
+    void resize(int slots) {
+        slots_ = slots;
+        id_.resize(slots);
+        for (auto* field : {&position_, &velocity_, &acceleration_}) field->resize(vectorSize(slots));
+        for (auto* field : {&density_, &inverseDensity_, &pressureTerm_, &mass_}) field->resize(slots);
+    }
+    template <class T> std::vector<T> copy(const Buffer<T, Device>& buffer) const {
+        std::vector<T> host(buffer.size());
+        device_.download(host.data(), buffer.data(), buffer.size());
+        return host;
+    }
+
+    Device& device_;
+    int slots_ = 0;
+    Buffer<int, Device> id_{device_}, sortedId_{device_}, key_{device_}, order_{device_}, cellStart_{device_};
+    Buffer<real, Device> position_{device_}, velocity_{device_}, acceleration_{device_};
+    Buffer<real, Device> sortedPosition_{device_}, sortedVelocity_{device_};
+    Buffer<real, Device> density_{device_}, inverseDensity_{device_}, pressureTerm_{device_}, mass_{device_};
+};
+
+}  // namespace spindrift::LANES
+
+#endif

@@ -1,0 +1,27 @@
+// What a neighbour search keeps between passes: boxes and lists of clusters with SIMD, nothing otherwise.
+#if defined(SPINDRIFT_SIM_SEARCH_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SPINDRIFT_SIM_SEARCH_H
+#undef SPINDRIFT_SIM_SEARCH_H
+#else
+#define SPINDRIFT_SIM_SEARCH_H
+#endif
+
+#ifdef SPINDRIFT_SIMD
+#include "sim/cluster_lists.h"
+namespace spindrift::LANES {
+using Boxes = ClusterBoxes;
+using Lists = ClusterLists;
+}  // namespace spindrift::LANES
+#else
+#include "sim/view.h"
+namespace spindrift::LANES {
+// One particle at a time walks the rows of cells: no boxes, no lists.
+struct Boxes { template <class... A> void compute(A&&...) {} };
+struct Lists {
+    template <class... A> void build(A&&...) {}
+    const ClusterList* data() const { return nullptr; }
+};
+}  // namespace spindrift::LANES
+#endif
+
+#endif

@@ -1,0 +1,72 @@
+#pragma once
+// All that the front end sees of the physics: a handful of functions, no templates, no CUDA.
+#include "core/vec.h"
+#include "core/vertex.h"
+#include "scene/scene.h"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace spindrift {
+
+// One row of the plan: a pass's name and the wall time it took since the last resetTimes().
+struct PassTime { const char* name; double ms; int64_t runs; };
+
+// Smallest and largest value among the vertices written.
+struct Range { float min, max; };
+
+// What a run says of itself. Energies in J, momentum in kg m/s, lengths in m; sums in double precision.
+struct Measurement {
+    double time = 0;                 // s
+    double dt = 0;                   // s, the last step
+    int64_t steps = 0;
+    double kineticEnergy = 0;        // sum m v^2 / 2
+    double potentialEnergy = 0;      // -sum m g.x, zero at the domain's lower corner
+    Vec3d momentum;                  // sum m v
+    Vec3d centerOfMass;              // world coordinates
+    double meanDensity = 0;          // kg/m^3
+    double densityError = 0;         // mean of max(rho/rho0 - 1, 0): compression only
+    double maxDensityError = 0;      // largest rho/rho0 - 1
+    double maxSpeed = 0;             // m/s
+    bool finite = true;              // no NaN or infinity in position, velocity, density
+};
+
+// One particle as the picker and tests see it. Position in world coordinates.
+struct Particle { int id = -1; Vec3d position, velocity, acceleration; double density = 0, pressure = 0; };
+
+// A sphere of fluid dragged along by the mouse. World coordinates; off when radius is 0.
+struct Stir { Vec3 center; float radius = 0; Vec3 velocity; };
+
+class Simulation {
+public:
+    virtual ~Simulation() = default;
+
+    // Advances by `count` time steps.
+    virtual void step(int count = 1) = 0;
+    // Takes over live knobs (schema.h says which); restart knobs must be unchanged.
+    virtual void apply(const Scene&) = 0;
+    virtual void stir(const Stir&) = 0;
+
+    // Fluid particles have ids [0, fluidCount), boundary particles [fluidCount, fluidCount + wallCount).
+    virtual int fluidCount() const = 0;
+    virtual int wallCount() const = 0;
+    // Fills out[id] for every fluid particle, and for the boundary particles when withWalls. `out` must hold
+    // fluidCount (+ wallCount) vertices. Returns the range of the fluid's values. Boundary value: 0.
+    virtual Range writeVertices(Vertex* out, ColorBy, bool withWalls) = 0;
+
+    virtual Measurement measure() = 0;
+    // All fluid particles, in the order of their ids.
+    virtual std::vector<Particle> particles() = 0;
+
+    virtual std::vector<PassTime> times() const = 0;
+    virtual void resetTimes() = 0;
+    // "CPU, 2 threads, AVX-512, float"
+    virtual std::string deviceName() const = 0;
+};
+
+// Chooses the backend by scene.compute and builds the particles. Throws Error (NoDevice, Memory, Scene).
+std::unique_ptr<Simulation> makeSimulation(const Scene&);
+
+}  // namespace spindrift

@@ -1,0 +1,121 @@
+// Terms: one pairwise contribution to the acceleration each. A term says whether a scene wants it, what it
+// reads of both particles, and adds itself: between fluid particles (`add`) and between a fluid particle and a
+// boundary particle (`addWall`; v_b = 0). grad W = gradientNorm/R^5 g x, and what all pairs share, the mass m and
+// gradientNorm/R^5, is left out here and multiplied once, at the end of the pass.
+#if defined(SPINDRIFT_SIM_TERMS_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SPINDRIFT_SIM_TERMS_H
+#undef SPINDRIFT_SIM_TERMS_H
+#else
+#define SPINDRIFT_SIM_TERMS_H
+#endif
+
+#include "scene/scene.h"
+#include "sim/neighbours.h"
+
+namespace spindrift::LANES {
+
+enum Needs : unsigned { Velocity = 1, InverseDensity = 2 };
+
+// What terms read of one particle.
+template <class R> struct State { Vector<R> velocity; R pressureTerm, inverseDensity; };
+
+template <unsigned needs, class I> HD inline State<Real<I>> loadState(const Particles& p, I i) {
+    State<Real<I>> s;
+    s.pressureTerm = load(p.pressureTerm, i);
+    if constexpr (needs & Velocity) s.velocity = load(p.velocity, i);
+    if constexpr (needs & InverseDensity) s.inverseDensity = load(p.inverseDensity, i);
+    return s;
+}
+
+// A boundary particle: its mass in units of m, and p / rho^2.
+template <class R> struct Wall { R mass, pressureTerm; };
+
+// The pressure part is kept apart because the classic formulation caps it.
+template <class R> struct Acceleration { Vector<R> pressure, other; };
+
+// -sum_j m (p_i/rho_i^2 + p_j/rho_j^2) grad W, Monaghan 1992. Walls take part with the pressure that
+// ExtrapolateWallPressure gave them; in the classic formulation (and Akinci 2012) they have none.
+struct PressureForce {
+    static constexpr unsigned needs = 0;
+    static bool wanted(const Scene&) { return true; }
+    template <class R>
+    HD static void add(const Constants&, const Pair<R>& p, R g, const State<R>& i, const State<R>& j, Acceleration<R>& a) {
+        a.pressure = subtractScaled(a.pressure, g * (i.pressureTerm + j.pressureTerm), p.r);
+    }
+    template <class R>
+    HD static void addWall(const Constants&, const Pair<R>& p, R g, const State<R>& i, const Wall<R>& b, Acceleration<R>& a) {
+        a.pressure = subtractScaled(a.pressure, b.mass * g * (i.pressureTerm + b.pressureTerm), p.r);
+    }
+};
+
+// Laminar viscosity, Morris 1997: sum_j m 2 mu / (rho_i rho_j) (x.grad W) / (d^2 + eta^2) v_ij; walls don't slip.
+struct LaminarViscosity {
+    static constexpr unsigned needs = Velocity | InverseDensity;
+    static bool wanted(const Scene& s) {
+        return s.simulation.formulation == Formulation::Wcsph && s.fluid.viscosity > 0;
+    }
+    template <class R> HD static R strength(const Constants& c, const Pair<R>& p, R g, R ownInverseDensity) {
+        return R(c.laminar) * ownInverseDensity * g * (p.distance2 * p.inverseDistance2);
+    }
+    template <class R>
+    HD static void add(const Constants& c, const Pair<R>& p, R g, const State<R>& i, const State<R>& j, Acceleration<R>& a) {
+        a.other = addScaled(a.other, strength(c, p, g, i.inverseDensity) * j.inverseDensity, i.velocity - j.velocity);
+    }
+    template <class R>
+    HD static void addWall(const Constants& c, const Pair<R>& p, R g, const State<R>& i, const Wall<R>& b, Acceleration<R>& a) {
+        a.other = addScaled(a.other, strength(c, p, g, i.inverseDensity) * i.inverseDensity * b.mass, i.velocity);
+    }
+};
+
+// Artificial viscosity, Monaghan 1992, on approach only: sum_j m alpha c h (v.x) / ((d^2 + eta^2) rho) grad W,
+// with the mean of 1/rho in place of one over the mean.
+struct ArtificialViscosity {
+    static constexpr unsigned needs = Velocity | InverseDensity;
+    static bool wanted(const Scene& s) {
+        return s.simulation.formulation == Formulation::Wcsph && s.fluid.artificialViscosity > 0;
+    }
+    template <class R> HD static R approach(const Constants& c, const Pair<R>& p, R g, Vector<R> vij) {
+        return R(c.artificial) * g * (min(dot(vij, p.r), R(0)) * p.inverseDistance2);
+    }
+    template <class R>
+    HD static void add(const Constants& c, const Pair<R>& p, R g, const State<R>& i, const State<R>& j, Acceleration<R>& a) {
+        const R s = approach(c, p, g, i.velocity - j.velocity);
+        a.other = addScaled(a.other, s * (i.inverseDensity + j.inverseDensity), p.r);
+    }
+    template <class R>
+    HD static void addWall(const Constants& c, const Pair<R>& p, R g, const State<R>& i, const Wall<R>& b, Acceleration<R>& a) {
+        const R s = approach(c, p, g, i.velocity);
+        a.other = addScaled(a.other, b.mass * s * (i.inverseDensity + i.inverseDensity), p.r);
+    }
+};
+
+// The classic formulation's viscosity: nu sum_j m (v_j - v_i) / rho0 (R - d) / (pi R^6); walls slip.
+struct ClassicViscosity {
+    static constexpr unsigned needs = Velocity;
+    static bool wanted(const Scene& s) {
+        return s.simulation.formulation == Formulation::Classic && s.fluid.viscosity > 0;
+    }
+    template <class R>
+    HD static void add(const Constants& c, const Pair<R>& p, R, const State<R>& i, const State<R>& j, Acceleration<R>& a) {
+        a.other = addScaled(a.other, R(c.classicViscosity) * max(R(1) - p.q, R(0)), j.velocity - i.velocity);
+    }
+    template <class R>
+    HD static void addWall(const Constants&, const Pair<R>&, R, const State<R>&, const Wall<R>&, Acceleration<R>&) {}
+};
+
+template <class... Ts> struct TermList { static constexpr unsigned needs = (0u | ... | Ts::needs); };
+using OptionalTerms = TermList<LaminarViscosity, ArtificialViscosity, ClassicViscosity>;
+
+// Calls done(TermList<...>) with just the terms this scene wants: a run-time scene becomes a compile-time list.
+template <class Done, class... Chosen> auto chooseTerms(const Scene&, Done done, TermList<Chosen...> chosen, TermList<>) {
+    return done(chosen);
+}
+template <class Done, class... Chosen, class T, class... Rest>
+auto chooseTerms(const Scene& s, Done done, TermList<Chosen...> chosen, TermList<T, Rest...>) {
+    return T::wanted(s) ? chooseTerms(s, done, TermList<Chosen..., T>{}, TermList<Rest...>{})
+                        : chooseTerms(s, done, chosen, TermList<Rest...>{});
+}
+
+}  // namespace spindrift::LANES
+
+#endif

@@ -1,0 +1,258 @@
+// The real program, as a shell sees it: each mistake by its words and exit code, and what it prints
+// when all is well.
+#include "core/error.h"
+#include "render/image.h"
+#include "scene/json.h"
+#include "scene/read_knobs.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+namespace spindrift {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Outcome {
+    int code;
+    std::string text;
+};
+
+std::string slurp(const fs::path& path) {
+    std::ifstream stream(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+// Runs in a folder of its own, without a display.
+class CommandLine : public ::testing::Test {
+protected:
+    CommandLine() {
+        folder_ = fs::temp_directory_path() /
+                  ("spindrift_" + std::to_string(getpid()) + "_" +
+                   ::testing::UnitTest::GetInstance()->current_test_info()->name());
+        fs::create_directories(folder_);
+    }
+    ~CommandLine() override { fs::remove_all(folder_); }
+
+    // Standard output, and standard error behind `redirection`; see "2>&1".
+    Outcome call(const std::string& arguments, const char* redirection = "2>&1") const {
+        const std::string command = "cd '" + folder_.string() +
+                                    "' && env -u DISPLAY -u WAYLAND_DISPLAY -u SDL_VIDEODRIVER "
+                                    "timeout 60 '" SPINDRIFT_PROGRAM "' " +
+                                    arguments + " " + redirection;
+        std::FILE* pipe = popen(command.c_str(), "r");
+        Outcome outcome{-1, ""};
+        std::array<char, 4096> buffer;
+        for (size_t n; (n = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
+            outcome.text.append(buffer.data(), n);
+        const int status = pclose(pipe);
+        outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + status;
+        return outcome;
+    }
+
+    void expectMistake(const std::string& arguments, Exit code, const std::string& words) const {
+        const Outcome outcome = call(arguments);
+        EXPECT_EQ(outcome.code, int(code)) << arguments << "\n" << outcome.text;
+        EXPECT_NE(outcome.text.find(words), std::string::npos) << arguments << "\n"
+                                                               << words << "\nin: " << outcome.text;
+        EXPECT_EQ(std::count(outcome.text.begin(), outcome.text.end(), '\n'), 1)
+            << "one line: " << outcome.text;
+    }
+
+    std::string write(const std::string& name, const std::string& text) const {
+        std::ofstream(folder_ / name) << text;
+        return name;
+    }
+
+    std::vector<std::string> files() const {
+        std::vector<std::string> names;
+        for (auto& entry : fs::recursive_directory_iterator(folder_))
+            names.push_back(entry.path().filename().string());
+        return names;
+    }
+
+    fs::path folder_;
+};
+
+const std::string Small = "test/ball_drop_small --headless --threads 2 ";
+
+TEST_F(CommandLine, MistakesInTheArguments) {
+    expectMistake("--bogus", Exit::Usage, "--bogus");
+    expectMistake("pool_drop extra", Exit::Usage, "extra");
+    expectMistake(Small + "--steps", Exit::Usage, "--steps");
+    expectMistake(Small + "--steps many", Exit::Usage,
+                  "--steps: compute.steps: expected a whole number, found \"many\"");
+    expectMistake(Small + "--steps -5", Exit::Usage, "-5 is out of range, allowed: 0 to");
+    expectMistake(Small + "--threads 0", Exit::Usage, "leave it out for all cores");
+    expectMistake(Small + "--size 800", Exit::Usage,
+                  "--size: expected WIDTHxHEIGHT, found \"800\"");
+    expectMistake(Small + "--size 0x600", Exit::Usage,
+                  "window.width: 0 is out of range, allowed: 16 to 16384 px");
+    expectMistake(Small + "--camera 1", Exit::Usage, "--camera: expected YAW,PITCH[,DISTANCE]");
+    expectMistake(Small + "--color speed", Exit::Usage,
+                  "view.color_by: expected one of plain, velocity");
+    expectMistake(Small + "--set fluid.viscosty=1", Exit::Usage, "did you mean fluid.viscosity?");
+    expectMistake(Small + "--set fluid.viscosity", Exit::Usage, "--set: expected path=value");
+    expectMistake(Small + "--set fluid.viscosity=nan", Exit::Usage, "expected a number in Pa s");
+    expectMistake(Small + "--set fluid.viscosity=-1", Exit::Usage,
+                  "out of range, allowed: 0 to 1000 Pa s");
+    expectMistake("compare", Exit::Usage, "required");
+}
+
+TEST_F(CommandLine, MistakesInTheScene) {
+    expectMistake("nowhere.json", Exit::Scene, "nowhere.json: no such scene file");
+    expectMistake("pool_dorp", Exit::Scene, "did you mean pool_drop?");
+    expectMistake(".", Exit::Scene, "is a folder");
+    expectMistake(write("a.json", "{\"version\": 2,\n \"fluid\": {]}") + " --headless", Exit::Scene,
+                  "a.json: line 2, column 12: not valid JSON");
+    expectMistake(write("b.json", R"({"version": 2, "fluid": {"gmama": 7}})"), Exit::Scene,
+                  "b.json: fluid.gmama: unknown key; did you mean \"gamma\"?");
+    expectMistake(write("c.json", R"({"version": 2, "fluid": {"gamma": [7]}})"), Exit::Scene,
+                  "c.json: fluid.gamma: expected");
+    expectMistake(write("d.json", R"({"simulation": {"smooth_radius": 0}})"), Exit::Scene,
+                  "d.json: simulation.smooth_radius: 0 is out of range");
+    expectMistake(write("e.json", R"({"simulation": {"fluid_grid": [100, 10, 10]}})"), Exit::Scene,
+                  "e.json: fluid.bodies[0]: 2.5 m along x is larger than the domain's 1 m");
+    expectMistake(Small + "--threads 4000", Exit::Scene,
+                  "compute.threads: 4000 threads are more than the");
+    expectMistake(Small + "--set simulation.spacing=0.00001", Exit::Memory,
+                  "raise simulation.spacing");
+}
+
+TEST_F(CommandLine, MistakesWithOutputsAreFoundBeforeTheRun) {
+    // Steps without end: only a refusal before the first one comes back.
+    const std::string endless = Small + "--steps 1000000000 ";
+    for (const char* option : {"--screenshot", "--csv", "--json"})
+        expectMistake(endless + option + " missing/file", Exit::Output,
+                      "missing/file: can't be written");
+    expectMistake(endless + "--csv .", Exit::Output, "it is a folder");
+    expectMistake(endless + "--frames /proc/frames", Exit::Output,
+                  "/proc/frames: can't be written");
+    expectMistake(endless + "--csv - --json -", Exit::Output, "both want standard output");
+    expectMistake(endless + "--csv a.csv --screenshot missing/a.png", Exit::Output,
+                  "missing/a.png");
+    EXPECT_TRUE(files().empty()) << files().front();
+}
+
+TEST_F(CommandLine, PrintConfigIsAScene) {
+    const Outcome first = call(
+        "pool_drop --set fluid.viscosity=0.25 --camera -30,10.5 --size 640x480 --print-config");
+    ASSERT_EQ(first.code, 0) << first.text;
+    const Scene scene = parseScene(first.text, "printed");
+    EXPECT_EQ(scene.fluid.viscosity, 0.25f);
+    EXPECT_EQ(scene.view.camera.yaw, -30);
+    EXPECT_EQ(scene.window.height, 480);
+    EXPECT_EQ(scene.fluid.bodies.size(), 2u);
+    const Outcome again = call(write("again.json", first.text) + " --print-config");
+    EXPECT_EQ(again.text, first.text);
+    EXPECT_EQ(call("--print-config").text, writeScene(Scene{}));
+    EXPECT_EQ(call("run --print-config").text, writeScene(Scene{}));
+}
+
+TEST_F(CommandLine, SchemaIsJson) {
+    const Outcome outcome = call("schema");
+    EXPECT_EQ(outcome.code, 0);
+    const Json schema = parseJson(outcome.text, "schema");
+    EXPECT_EQ(schema["properties"]["simulation"]["properties"]["spacing"]["type"], "number");
+}
+
+TEST_F(CommandLine, HelpHasOptionsAndKnobs) {
+    const Outcome outcome = call("--help");
+    EXPECT_EQ(outcome.code, 0);
+    for (const char* text :
+         {"--screenshot", "compare", "schema", "fluid.viscosity", "0 to 1000 Pa s"})
+        EXPECT_NE(outcome.text.find(text), std::string::npos) << text;
+    EXPECT_EQ(call("--version").text.find("spindrift "), 0u);
+}
+
+TEST_F(CommandLine, SeriesGoesToStandardOutputAlone) {
+    const Outcome outcome = call(Small + "--time 0.02 --fps 1000 --csv -", "2>/dev/null");
+    EXPECT_EQ(outcome.code, 0);
+    EXPECT_EQ(outcome.text.find("time [s],step,dt [s],kinetic_energy [J],"), 0u) << outcome.text;
+    EXPECT_GE(std::count(outcome.text.begin(), outcome.text.end(), '\n'), 4) << outcome.text;
+    const std::string last =
+        outcome.text.substr(outcome.text.rfind('\n', outcome.text.size() - 2) + 1);
+    EXPECT_GE(std::stod(last), 0.02);
+}
+
+TEST_F(CommandLine, WritesWhatWasAskedFor) {
+    const Outcome outcome =
+        call(Small +
+             "--steps 20 --fps 1000 --size 160x120 --json run.json --csv run.csv "
+             "--frames frames --screenshot last.png");
+    ASSERT_EQ(outcome.code, 0) << outcome.text;
+    EXPECT_NE(outcome.text.find("particles      "), std::string::npos) << outcome.text;
+    EXPECT_NE(outcome.text.find((folder_ / "last.png").string()), std::string::npos)
+        << outcome.text;
+    const Json series = parseJson(slurp(folder_ / "run.json"), "series");
+    EXPECT_EQ(series["columns"][0]["unit"], "s");
+    EXPECT_EQ(series["rows"].back()[1], 20);
+    EXPECT_EQ(series["rows"].back().size(), series["columns"].size());
+    EXPECT_EQ(readPng((folder_ / "last.png").string()).width, 160);
+    EXPECT_EQ(readPng((folder_ / "frames/frame_00000.png").string()).height, 120);
+    EXPECT_TRUE(fs::exists(folder_ / "frames/frame_00001.png"));
+    for (const std::string& name : files())
+        EXPECT_EQ(name.find(".part"), std::string::npos) << name;
+}
+
+TEST_F(CommandLine, WithoutADisplayItRendersOffScreen) {
+    const Outcome outcome = call("test/ball_drop_small --steps 5 --size 160x120");
+    ASSERT_EQ(outcome.code, 0) << outcome.text;
+    EXPECT_NE(outcome.text.find("no "), std::string::npos);
+    EXPECT_NE(outcome.text.find("rendering off screen, to spindrift.png"), std::string::npos)
+        << outcome.text;
+    EXPECT_NE(outcome.text.find((folder_ / "spindrift.png").string()), std::string::npos)
+        << outcome.text;
+    EXPECT_EQ(readPng((folder_ / "spindrift.png").string()).width, 160);
+    EXPECT_NE(outcome.text.find("density error"), std::string::npos) << outcome.text;
+}
+
+TEST_F(CommandLine, ADivergedRunSaysSoAndKeepsItsData) {
+    const Outcome outcome = call(
+        Small + "--steps 1000000 --set time.mode=fixed --set time.step=0.1 --csv run.csv --quiet");
+    EXPECT_EQ(outcome.code, int(Exit::Diverged)) << outcome.text;
+    EXPECT_NE(outcome.text.find("diverged at step "), std::string::npos) << outcome.text;
+    EXPECT_NE(slurp(folder_ / "run.csv").find("time [s]"), std::string::npos);
+}
+
+TEST_F(CommandLine, AGpuThatIsMissingIsAnError) {
+    const Outcome outcome = call(Small + "--steps 1 --backend cuda");
+    if (outcome.code == 0) GTEST_SKIP() << "this machine has one";
+    EXPECT_EQ(outcome.code, int(Exit::NoDevice)) << outcome.text;
+    EXPECT_NE(outcome.text.find("cuda"), std::string::npos) << outcome.text;
+}
+
+TEST_F(CommandLine, ComparesPictures) {
+    Image image{32, 32, std::vector<uint8_t>(32 * 32 * 3)};
+    for (size_t i = 0; i < image.rgb.size(); ++i) image.rgb[i] = uint8_t(i * 37 % 251);
+    writePng((folder_ / "a.png").string(), image);
+    image.rgb[500] = uint8_t(image.rgb[500] ^ 8);
+    writePng((folder_ / "b.png").string(), image);
+    writePng((folder_ / "c.png").string(), Image{2, 2, std::vector<uint8_t>(12)});
+
+    EXPECT_EQ(call("compare a.png a.png").text,
+              "SSIM 1.000000, largest difference 0 of 255, 0 of 1024 pixels differ\n");
+    EXPECT_EQ(call("compare a.png a.png").code, 0);
+    const Outcome differing = call("compare a.png b.png --diff d.png");
+    EXPECT_EQ(differing.code, 1);
+    EXPECT_NE(differing.text.find("largest difference 8 of 255, 1 of 1024"), std::string::npos)
+        << differing.text;
+    EXPECT_EQ(readPng((folder_ / "d.png").string()).rgb[500], 255);
+    EXPECT_EQ(call("compare a.png b.png --max-difference 8").code, 0);
+    EXPECT_EQ(call("compare a.png b.png --max-difference 7").code, 1);
+    EXPECT_EQ(call("compare a.png b.png --min-ssim 0.9").code, 0);
+    EXPECT_EQ(call("compare a.png b.png --min-ssim 1").code, 1);
+    EXPECT_EQ(call("compare a.png c.png").code, 1);
+    expectMistake("compare a.png missing.png", Exit::Scene, "missing.png");
+    expectMistake("compare a.png " + write("no.png", "text"), Exit::Scene, "no.png");
+    expectMistake("compare a.png b.png --diff missing/d.png", Exit::Output,
+                  "missing/d.png: can't be written");
+}
+
+}  // namespace
+}  // namespace spindrift

@@ -1,0 +1,174 @@
+// The real program on a screen without a monitor, driven by keys and mouse; what it shows is
+// compared by its screenshots.
+#include "xvfb.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <thread>
+
+namespace spindrift {
+namespace {
+
+struct WindowTest : testing::Test {
+    static Screen* screen;
+    static void SetUpTestSuite() {
+        ASSERT_TRUE(allInstalled({"Xvfb", "xdotool"})) << "install xvfb and xdotool";
+        screen = new Screen;
+    }
+    static void TearDownTestSuite() {
+        delete screen;
+        screen = nullptr;
+    }
+
+    // A small scene that stands still until Space is pressed.
+    static Window paused(std::vector<std::string> more = {}) {
+        std::vector<std::string> arguments{
+            "test/dam_break_small", "--size", "800x600",         "--steps", "20", "--set",
+            "view.range=fixed",     "--set",  "view.range_max=2"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return Window(*screen, arguments);
+    }
+};
+Screen* WindowTest::screen = nullptr;
+
+// Share of the pixels that differ visibly.
+double difference(const Image& a, const Image& b) {
+    if (a.rgb.size() != b.rgb.size() || a.rgb.empty()) return 1;
+    size_t changed = 0;
+    for (size_t i = 0; i < a.rgb.size(); i += 3)
+        for (size_t k = i; k < i + 3; ++k)
+            if (std::abs(a.rgb[k] - b.rgb[k]) > 12) {
+                ++changed;
+                break;
+            }
+    return double(changed) / (double(a.rgb.size()) / 3);
+}
+
+// Waits until the picture no longer changes.
+Image settled(Window& window) {
+    Image last = window.screenshot();
+    for (int i = 0; i < 20; ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(200));
+        Image next = window.screenshot();
+        if (next == last) return next;
+        last = std::move(next);
+    }
+    ADD_FAILURE() << "the picture doesn't come to rest";
+    return last;
+}
+
+constexpr double seen = 0.003;
+
+TEST_F(WindowTest, MouseOrbitsPansAndZoomsAndHomeComesBack) {
+    Window window = paused();
+    const Image home = settled(window);
+    const struct {
+        const char* what;
+        std::function<void()> act;
+    } moves[] = {
+        {"orbit", [&] { window.drag(1, 550, 300, 650, 250); }},
+        {"pan by the middle button", [&] { window.drag(2, 550, 300, 600, 340); }},
+        {"pan by Shift",
+         [&] {
+             window.act("keydown shift");
+             window.drag(1, 550, 300, 600, 340);
+             window.act("keyup shift");
+         }},
+        {"zoom in", [&] { window.act(window.at(560, 320) + "click 4 click 4"); }},
+        {"zoom out", [&] { window.act(window.at(560, 320) + "click 5 click 5"); }},
+    };
+    for (const auto& move : moves) {
+        move.act();
+        EXPECT_GT(difference(home, settled(window)), seen) << move.what;
+        window.act("key Home");
+        EXPECT_LT(difference(home, settled(window)), 1e-4) << "Home after " << move.what;
+    }
+}
+
+TEST_F(WindowTest, SpaceRunsAndPausesRightStepsResetGoesBack) {
+    Window window(*screen, {"test/dam_break_small", "--size", "800x600", "--set",
+                            "view.range=fixed", "--set", "view.range_max=2"});
+    window.act("key space sleep 0.3 key r");  // pause, then back to the start
+    const Image start = settled(window);
+    window.act("key space sleep 1.5 key space");
+    const Image later = settled(window);
+    EXPECT_GT(difference(start, later), seen) << "Space ran";
+    EXPECT_LT(difference(later, settled(window)), 1e-4) << "Space paused";
+    for (int i = 0; i < 12; ++i) window.act("key Right sleep 0.05");
+    EXPECT_GT(difference(later, settled(window)), 1e-4) << "Right stepped";
+    window.act("key r");
+    EXPECT_LT(difference(start, settled(window)), 1e-4) << "R went back to the start";
+}
+
+TEST_F(WindowTest, KeysChooseColoursWallsAndPanel) {
+    Window window = paused();
+    window.act("key 2");
+    const Image velocity = settled(window);
+    for (const char* key : {"1", "3", "4"}) {
+        window.act(std::string("key ") + key);
+        EXPECT_GT(difference(velocity, settled(window)), seen) << key;
+    }
+    window.act("key 2");
+    EXPECT_LT(difference(velocity, settled(window)), 1e-4);
+    window.act("key b");
+    EXPECT_GT(difference(velocity, settled(window)), seen) << "B shows the walls";
+    window.act("key b");
+    EXPECT_LT(difference(velocity, settled(window)), 1e-4);
+    window.act("key Tab");
+    EXPECT_GT(settled(window).width, velocity.width) << "without the panel the picture is wider";
+    window.act("key Tab");
+    EXPECT_EQ(settled(window), velocity);
+}
+
+TEST_F(WindowTest, HelpPanelAndUnknownKeysDoNotTouchThePicture) {
+    Window window = paused();
+    const Image before = settled(window);
+    window.act("key h key F1 key g key x key z");
+    EXPECT_EQ(settled(window), before);
+    EXPECT_TRUE(window.running());
+}
+
+TEST_F(WindowTest, DoubleClickMarksAParticleAndCtrlDragStirs) {
+    Window window = paused();
+    const Image before = settled(window);
+    window.act(window.at(470, 330) + "click --repeat 2 --delay 60 1");
+    const Image marked = settled(window);
+    EXPECT_GT(difference(before, marked), 1e-4) << "the picked particle has a ring";
+    EXPECT_LT(difference(before, marked), 0.01);
+    window.act("keydown ctrl " + window.at(470, 330) + "mousedown 1 sleep 0.2 " +
+               window.at(500, 320) + "sleep 0.3");
+    EXPECT_GT(difference(marked, window.screenshot()), 5e-4) << "the stirrer is shown";
+    window.act("mouseup 1 keyup ctrl");
+    EXPECT_TRUE(window.running());
+}
+
+TEST_F(WindowTest, FullScreenAndBack) {
+    Window window = paused();
+    const Image before = settled(window);
+    window.act("key f sleep 0.5");
+    const Image full = settled(window);
+    EXPECT_GT(full.height, before.height);
+    window.act("key f sleep 0.5");
+    EXPECT_EQ(settled(window).height, before.height);
+}
+
+TEST_F(WindowTest, EscapeLeavesWithZero) {
+    Window window = paused();
+    window.act("key Escape");
+    EXPECT_EQ(window.wait(20), 0) << window.log();
+}
+
+TEST_F(WindowTest, WithoutAScreenItIsAnErrorOfItsOwn) {
+    for (const char* driver : {"offscreen", "dummy"}) {
+        const std::string command = std::string("DISPLAY= SDL_VIDEODRIVER=") + driver +
+                                    " timeout 30 " + SPINDRIFT_PROGRAM +
+                                    " test/dam_break_small >/dev/null 2>&1";
+        EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 5) << driver;
+    }
+}
+
+}  // namespace
+}  // namespace spindrift

@@ -1,0 +1,39 @@
+// One answer for any number of threads, and for any two runs: bit by bit.
+#include "scene/json.h"
+#include "sim/simulation.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+
+namespace spindrift {
+namespace {
+
+uint64_t hashAfter(const std::string& file, int threads, int steps, int change = 0) {
+    Scene scene = loadScene(std::string(SPINDRIFT_SOURCE_DIR) + "/configs/test/" + file);
+    scene.compute.threads = threads;
+    scene.simulation.gravity.x += 1e-3f * float(change);
+    auto simulation = makeSimulation(scene);
+    simulation->step(steps);
+    uint64_t hash = 1469598103934665603ull;   // FNV-1a
+    for (const Particle& p : simulation->particles())
+        for (const Vec3d& v : {p.position, p.velocity, Vec3d{p.density, p.pressure, 0}})
+            for (int k = 0; k < 3; ++k) hash = (hash ^ std::bit_cast<uint64_t>(v[k])) * 1099511628211ull;
+    return hash;
+}
+
+class Determinism : public testing::TestWithParam<const char*> {};
+
+TEST_P(Determinism, SameBitsForOneTwoAndThreeThreads) {
+    const uint64_t one = hashAfter(GetParam(), 1, 200);
+    EXPECT_EQ(one, hashAfter(GetParam(), 2, 200));
+    EXPECT_EQ(one, hashAfter(GetParam(), 3, 200));
+    EXPECT_EQ(one, hashAfter(GetParam(), 1, 200));
+    EXPECT_NE(one, hashAfter(GetParam(), 1, 200, 1)) << "the hash does not notice another flow";
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Determinism,
+                         testing::Values("dam_break_small.json", "ball_drop_small.json", "historical_small.json"));
+
+}  // namespace
+}  // namespace spindrift

@@ -1,0 +1,54 @@
+#include "measure/time_series.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <sstream>
+
+namespace spindrift {
+namespace {
+
+std::vector<std::string> linesOf(const std::string& text) {
+    std::istringstream stream(text);
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(stream, line);) lines.push_back(line);
+    return lines;
+}
+
+TimeSeries example() {
+    TimeSeries series;
+    Measurement m;
+    m.time = 0.1, m.steps = 3, m.dt = 0.025, m.momentum = {1, 2, 3};
+    series.add(m, {});
+    m.time = 0.2, m.kineticEnergy = NAN;
+    series.add(m, {{"density", 6, 3}, {"sort", 0, 0}});
+    return series;
+}
+
+TEST(TimeSeries, CsvHasUnitsAndEqualRows) {
+    const auto lines = linesOf(example().csv());
+    ASSERT_EQ(lines.size(), 3u);
+    EXPECT_EQ(lines[0].find("time [s],step,dt [s],kinetic_energy [J]"), 0u);
+    EXPECT_NE(lines[0].find("density [ms],sort [ms]"), std::string::npos);
+    EXPECT_EQ(lines[1].find("0.1,3,0.025,0,"), 0u) << lines[1];
+    EXPECT_EQ(lines[2].find("0.2,3,0.025,nan,"), 0u) << lines[2];
+    for (const std::string& line : lines)
+        EXPECT_EQ(std::count(line.begin(), line.end(), ','),
+                  std::count(lines[0].begin(), lines[0].end(), ','))
+            << line;
+    EXPECT_TRUE(lines[2].ends_with(",2,0")) << "ms of one run of a pass: " << lines[2];
+}
+
+TEST(TimeSeries, JsonIsValidAndHasNullForNoNumber) {
+    const auto json = nlohmann::json::parse(example().json());
+    EXPECT_EQ(json["columns"][3]["name"], "kinetic_energy");
+    EXPECT_EQ(json["columns"][3]["unit"], "J");
+    ASSERT_EQ(json["rows"].size(), 2u);
+    EXPECT_EQ(json["rows"][0].size(), json["columns"].size());
+    EXPECT_TRUE(json["rows"][1][3].is_null());
+    EXPECT_EQ(json["rows"][0][0], 0.1);
+}
+
+}  // namespace
+}  // namespace spindrift

@@ -1,0 +1,93 @@
+// Scenes whose values are in range and still make no sense: each refused with path and remedy.
+#include "scene/check.h"
+
+#include "core/error.h"
+#include "scene/json.h"
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <filesystem>
+
+namespace spindrift {
+namespace {
+
+struct Verdict {
+    Exit exit;
+    std::string text;
+};
+Verdict verdict(const std::vector<std::string>& knobs) {
+    Scene scene;
+    for (const std::string& knob : knobs) setKnob(scene, knob);
+    try {
+        checkScene(scene, "a.json");
+    } catch (const Error& error) { return {error.exit, error.what()}; }
+    return {Exit::Ok, ""};
+}
+
+TEST(CheckScene, AcceptsTheDefaultsAndAllConfigs) {
+    EXPECT_NO_THROW(checkScene(Scene{}));
+    for (auto& entry :
+         std::filesystem::recursive_directory_iterator(SPINDRIFT_SOURCE_DIR "/configs"))
+        if (entry.path().extension() == ".json") {
+            EXPECT_NO_THROW(checkScene(loadScene(entry.path().string()))) << entry.path();
+        }
+}
+
+TEST(CheckScene, RefusesNonsenseByPathAndRemedy) {
+    const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
+        {{"domain.max=0,1,1"}, "a.json: domain.max: x = 0 m is not above domain.min x = 0 m"},
+        {{"domain.max=0.01,1,1"}, "domain: 0.01 m along x is less than the support radius"},
+        {{"simulation.support=1.2"}, "simulation.support: 1.2 leaves particles without neighbours"},
+        {{"simulation.formulation=classic"}, "domain: the classic formulation needs a cube"},
+        {{"fluid.bodies=[]"}, "fluid.bodies: is empty; add a body"},
+        {{"fluid.bodies[0].max=0.5,0.5,5"},
+         "fluid.bodies[0]: 5 m along z is larger than the domain's 0.6 m"},
+        {{"fluid.bodies[0].min=-0.1,0,0"},
+         "fluid.bodies[0]: spans -0.1 to 0.5 m along x, outside the domain's 0 to 1.6 m"},
+        {{"fluid.bodies[0].max=0,0.5,0.5"},
+         "fluid.bodies[0].max: x = 0 m is not above min x = 0 m"},
+        {{"fluid.bodies[0].max=0.005,0.5,0.5"},
+         "fluid.bodies[0]: 0.005 m along x is too thin for a particle"},
+        {{"fluid.bodies[0].shape=sphere", "fluid.bodies[0].radius=0.2"}, "outside the domain's"},
+        {{"compute.threads=4000", "fluid.bodies[0].max=0.1,0.1,0.1"},
+         "compute.threads: 4000 threads are more than the 125 particles"},
+        {{"view.range=fixed", "view.range_min=2"},
+         "view.range_max: 1 is not above view.range_min 2"},
+    };
+    for (const auto& [knobs, words] : cases) {
+        const Verdict v = verdict(knobs);
+        EXPECT_EQ(int(v.exit), int(Exit::Scene)) << words;
+        EXPECT_NE(v.text.find(words), std::string::npos) << words << "\nin: " << v.text;
+    }
+}
+
+TEST(CheckScene, RefusesABillionParticlesBeforeAllocating) {
+    // 1.6 x 0.9 x 0.6 m at 1 mm is 162 million fluid particles; at 0.1 mm 162 billion.
+    const Verdict large = verdict({"simulation.spacing=0.0001"});
+    EXPECT_EQ(int(large.exit), int(Exit::Memory));
+    EXPECT_NE(large.text.find("a.json: simulation.spacing: "), std::string::npos) << large.text;
+    EXPECT_NE(large.text.find("more than the 1000000000"), std::string::npos) << large.text;
+}
+
+TEST(CheckScene, RefusesMoreThanTheMachinesMemory) {
+    const double physical = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
+    if (physical > 300e9) GTEST_SKIP() << "this machine could hold it";
+    const Verdict heavy =
+        verdict({"simulation.spacing=0.00056"});  // 923 million particles: over 300 GB
+    EXPECT_EQ(int(heavy.exit), int(Exit::Memory));
+    EXPECT_NE(heavy.text.find("GiB of memory"), std::string::npos) << heavy.text;
+}
+
+TEST(CheckScene, MemoryGrowsWithParticles) {
+    Scene scene;
+    const int64_t coarse = estimateMemory(scene);
+    scene.simulation.spacing = 0.01f;
+    EXPECT_GT(coarse, 20250 * 400);
+    EXPECT_GT(estimateMemory(scene), 5 * coarse);
+    EXPECT_LT(estimateMemory(scene), 9 * coarse);
+}
+
+}  // namespace
+}  // namespace spindrift

@@ -1,0 +1,180 @@
+// The list of knobs: complete, without doubles, defaults in range, save and load is the identity.
+#include "scene/json.h"
+#include "scene/read_knobs.h"
+#include "scene/schema.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <set>
+
+namespace spindrift {
+namespace {
+
+std::vector<std::string> configs() {
+    std::vector<std::string> files;
+    for (auto& entry :
+         std::filesystem::recursive_directory_iterator(SPINDRIFT_SOURCE_DIR "/configs"))
+        if (entry.path().extension() == ".json") files.push_back(entry.path().string());
+    return files;
+}
+
+// Converts to anything, so that a struct of n fields can be initialised by at most n of them.
+struct Anything {
+    template <class T>
+    operator T() const;
+};
+template <class S, class... Fields>
+consteval int fieldCount() {
+    if constexpr (requires { S{Fields{}..., Anything{}}; })
+        return fieldCount<S, Fields..., Anything>();
+    else
+        return sizeof...(Fields);
+}
+
+int knobCount(const Scene& scene) {
+    int count = 0;
+    visitKnobs(scene, [&](const std::string&, const auto&, const Knob&) { ++count; });
+    return count;
+}
+
+TEST(Schema, EveryFieldOfASceneHasItsLine) {
+    Scene scene;
+    scene.fluid.bodies.clear();
+    const int structs = 9;  // window ... output, each one field of Scene
+    const int fields = fieldCount<Scene>() - structs + fieldCount<Window>() +
+                       fieldCount<Compute>() + fieldCount<SimulationKnobs>() +
+                       fieldCount<Domain>() + fieldCount<Walls>() + fieldCount<Fluid>() -
+                       1 /* bodies */ + fieldCount<TimeKnobs>() + fieldCount<View>() -
+                       1 /* camera */ + fieldCount<Camera>() + fieldCount<Output>();
+    EXPECT_EQ(knobCount(scene), fields);
+
+    std::set<std::string> names;
+    for (Shape shape : {Shape::Block, Shape::Sphere, Shape::Cylinder}) {
+        Body body;
+        body.shape = shape;
+        visitBody(body, "b",
+                  [&](const std::string& path, const auto&, const Knob&) { names.insert(path); });
+    }
+    EXPECT_EQ(int(names.size()), fieldCount<Body>());
+}
+
+TEST(Schema, NamesAreUniqueAndSnakeCase) {
+    std::set<std::string> names;
+    const Scene scene;
+    visitKnobs(scene, [&](const std::string& path, const auto&, const Knob& knob) {
+        EXPECT_TRUE(names.insert(path).second) << path;
+        EXPECT_EQ(path.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_.[]"),
+                  std::string::npos)
+            << path;
+        EXPECT_NE(std::string(knob.help), "") << path;
+        EXPECT_LE(knob.min, knob.max) << path;
+    });
+}
+
+TEST(Schema, DefaultsAreInRange) {
+    EXPECT_NO_THROW(requireRanges(Scene{}, "defaults"));
+    for (Shape shape : {Shape::Sphere, Shape::Cylinder}) {
+        Scene scene;
+        scene.fluid.bodies[0].shape = shape;
+        EXPECT_NO_THROW(requireRanges(scene, "defaults"));
+    }
+}
+
+TEST(Schema, NotANumberAndInfinityAreOutOfRange) {
+    for (float bad : {NAN, INFINITY, -INFINITY}) {
+        Scene scene;
+        scene.simulation.gravity.z = bad;
+        EXPECT_THROW(requireRanges(scene, "scene"), Error);
+        scene = {};
+        scene.fluid.viscosity = bad;
+        EXPECT_THROW(requireRanges(scene, "scene"), Error);
+    }
+}
+
+// Gives every knob a value that isn't its default.
+struct Change {
+    void operator()(const std::string& path, float& v, const Knob& k) const {
+        const float other = v + 0.37f * (k.max - v) / 3;
+        v = path.starts_with("fluid.bodies") ? v + 0.123f : std::min(other, k.max);
+    }
+    void operator()(const std::string& path, int& v, const Knob& k) const {
+        if (path != "version") v = v + 1 <= k.max ? v + 1 : v - 1;
+    }
+    void operator()(const std::string&, bool& v, const Knob&) const { v = !v; }
+    void operator()(const std::string&, std::string& v, const Knob&) const {
+        v += " \"new\" \\ \n\t \xc3\xbc // no comment";
+    }
+    void operator()(const std::string&, Vec3& v, const Knob&) const {
+        v = v + Vec3{0.1f, 1e-7f, -12.3456789f};
+    }
+    template <class E>
+    requires std::is_enum_v<E>
+    void operator()(const std::string& path, E& v, const Knob&) const {
+        if (!path.ends_with("shape")) v = E((int(v) + 1) % int(enumNames(v).size()));
+    }
+};
+
+TEST(Schema, SaveAndLoadIsTheIdentity) {
+    Scene scene;
+    EXPECT_EQ(writeScene(parseScene(writeScene(scene), "text")), writeScene(scene));
+
+    Body sphere, cylinder;
+    sphere.shape = Shape::Sphere;
+    cylinder.shape = Shape::Cylinder;
+    scene.fluid.bodies = {Body{}, sphere, cylinder};
+    visitKnobs(scene, Change{});
+    const Scene again = parseScene(writeScene(scene), "text");
+    EXPECT_EQ(writeScene(again), writeScene(scene));
+    // The values themselves, not their text.
+    EXPECT_EQ(again.simulation.gravity, scene.simulation.gravity);
+    EXPECT_EQ(again.simulation.spacing, scene.simulation.spacing);
+    EXPECT_EQ(again.window.title, scene.window.title);
+    EXPECT_EQ(again.fluid.bodies[2].axis, Axis::Z);
+    EXPECT_EQ(again.compute.threads, 1);
+    EXPECT_NE(writeScene(scene), writeScene(Scene{}));
+}
+
+TEST(Schema, FloatsAreWrittenShort) {
+    const std::string text = writeScene(Scene{});
+    EXPECT_NE(text.find("\"spacing\": 0.02,"), std::string::npos) << text;
+    EXPECT_NE(text.find("[0.0, -9.81, 0.0]"), std::string::npos) << text;
+}
+
+TEST(Schema, AllConfigsLoadAndSurviveSaving) {
+    const auto files = configs();
+    EXPECT_GE(files.size(), 12u);
+    for (const std::string& file : files) {
+        const Scene scene = loadScene(file);
+        EXPECT_EQ(writeScene(parseScene(writeScene(scene), file)), writeScene(scene)) << file;
+    }
+}
+
+TEST(Schema, JsonSchemaHasEveryKnob) {
+    const Json schema = parseJson(jsonSchema(), "schema");
+    const Scene scene;
+    visitKnobs(scene, [&](std::string path, const auto&, const Knob&) {
+        std::string pointer;
+        if (path.starts_with("fluid.bodies[0]."))
+            pointer = "/properties/fluid/properties/bodies/items/properties/" + path.substr(16);
+        else
+            for (size_t dot; !path.empty(); path.erase(0, dot)) {
+                dot = std::min(path.find('.'), path.size());
+                pointer += "/properties/" + path.substr(0, dot);
+                if (dot < path.size()) ++dot;
+            }
+        EXPECT_TRUE(schema.contains(Json::json_pointer(pointer))) << pointer;
+    });
+    EXPECT_EQ(schema["properties"]["fluid"]["properties"]["viscosity"]["maximum"].get<float>(),
+              1000);
+}
+
+TEST(Schema, TableHasEveryKnobAndItsUnit) {
+    const std::string table = knobTable();
+    for (const char* text :
+         {"fluid.viscosity", "Pa s", "fluid.bodies[i].height", "wendland_c2|cubic_spline"})
+        EXPECT_NE(table.find(text), std::string::npos) << text;
+}
+
+}  // namespace
+}  // namespace spindrift

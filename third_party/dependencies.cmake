@@ -1,0 +1,22 @@
+# How each library is found. All of them are Debian packages (packages.txt); nothing is vendored.
+find_package(PkgConfig REQUIRED)
+find_package(OpenMP REQUIRED COMPONENTS CXX)
+find_package(nlohmann_json REQUIRED)
+find_package(fmt REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(PNG REQUIRED)
+find_package(GLEW REQUIRED)
+set(OpenGL_GL_PREFERENCE GLVND)
+find_package(OpenGL REQUIRED COMPONENTS OpenGL EGL)
+
+pkg_check_modules(HWY REQUIRED IMPORTED_TARGET libhwy)
+add_library(hwy::hwy ALIAS PkgConfig::HWY)
+
+if(SPINDRIFT_WINDOW)
+  pkg_check_modules(SDL2 REQUIRED IMPORTED_TARGET sdl2)
+  pkg_check_modules(IMGUI REQUIRED IMPORTED_TARGET imgui)
+  add_library(imgui::imgui ALIAS PkgConfig::IMGUI)
+endif()
+if(SPINDRIFT_TESTS)
+  find_package(GTest REQUIRED)
+endif()
