@@ -3,7 +3,6 @@
 BUILD ?= build
 ARGS ?=
 CMAKE_ARGS ?=
-export OMP_WAIT_POLICY ?= passive
 
 .PHONY: run test build bench meson sanitize install clean
 

@@ -1,5 +1,6 @@
 #include "app/command_line.h"
 
+#include "app/bench.h"
 #include "app/compare.h"
 #include "app/headless.h"
 #include "app/scene_choice.h"
@@ -190,6 +191,16 @@ CLI::App* addCompare(CLI::App& app, CompareOptions& options) {
     return command;
 }
 
+CLI::App* addBench(CLI::App& app, BenchOptions& options) {
+    CLI::App* command = app.add_subcommand("bench", "times whole steps and their passes");
+    command->add_option("--only", options.only, "cases whose name contains this")->type_name("TEXT");
+    command->add_option("--json", options.json, "writes the figures as JSON")->type_name("FILE");
+    command->add_option("--threads", options.threads, "CPU threads; all cores without it")
+        ->type_name("N")->check(CLI::Range(1, 4096));
+    command->add_option("--simd", options.simd, "avx512, avx2 or sse; the best without it")->type_name("NAME");
+    return command;
+}
+
 // Everything that isn't the name of a command or a general option belongs to `run`.
 std::vector<std::string> withCommand(int argc, const char* const* argv, const CLI::App& app) {
     std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
@@ -213,6 +224,8 @@ int runCommandLine(int argc, const char* const* argv) {
     CompareOptions comparison;
     const CLI::App* runCommand = addRun(app, run);
     const CLI::App* compareCommand = addCompare(app, comparison);
+    BenchOptions benchmark;
+    const CLI::App* benchCommand = addBench(app, benchmark);
     const CLI::App* schemaCommand =
         app.add_subcommand("schema", "writes the JSON Schema of scene files");
     app.set_help_flag();
@@ -226,6 +239,7 @@ int runCommandLine(int argc, const char* const* argv) {
     }
     if (*runCommand) return runScene(run);
     if (*compareCommand) return compare(comparison);
+    if (*benchCommand) return bench(benchmark);
     if (*schemaCommand) fmt::print("{}", jsonSchema());
     return int(Exit::Ok);
 }

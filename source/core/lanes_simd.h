@@ -74,6 +74,8 @@ template <class D> HD inline Pack<D> max(Pack<D> a, Pack<D> b) { return Pack<D>(
 template <class D> HD inline Pack<D> select(typename Pack<D>::Mask m, Pack<D> yes, Pack<D> no) {
     return Pack<D>(hn::IfThenElse(m.m, yes.v, no.v));
 }
+// Whether it holds in any lane.
+HD inline bool any(Wide::Mask m) { return !hn::AllFalse(WideTag(), m.m); }
 // Exact root and division keep the divider busy beside the multipliers: cheaper than estimates with Newton steps.
 template <class D> HD inline Pack<D> squareRoot(Pack<D> a) { return Pack<D>(hn::Sqrt(a.v)); }
 // Sum over the four neighbours of each particle i, in all of its lanes.

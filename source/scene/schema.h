@@ -76,6 +76,11 @@ void visitProgram(S& s, Visitor&& visit) {
     visit("compute.simd", s.compute.simd, Knob{"", 0, 0, "widest CPU instructions used", Restart});
     visit("compute.threads", s.compute.threads,
           Knob{"", 0, 4096, "CPU threads, 0 = all cores", Restart});
+    visit("compute.skin", s.compute.skin,
+          Knob{"", 0, 1,
+               "neighbour lists reach this share of the support radius further and last until "
+               "particles have moved half of it, 0 = new lists each step",
+               Restart});
     visit("compute.steps", s.compute.steps,
           Knob{"", 0, 1e9f, "time steps to run, 0 = until closed or until output.time", Restart});
 }

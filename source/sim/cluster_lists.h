@@ -50,12 +50,7 @@ struct ClusterBoxes {
 // The lists of all clusters of one set (own) in a set (other).
 class ClusterLists {
 public:
-    const ClusterList* data() const { return lists_.data(); }
-    size_t bytes() const {
-        size_t sum = lists_.capacity() * sizeof(ClusterList);
-        for (const auto& entries : entries_) sum += entries.capacity() * sizeof(uint32_t);
-        return sum;
-    }
+    ClusterList* data() const { return const_cast<ClusterList*>(lists_.data()); }
 
     void build(Omp& device, const Grid& grid, float reach, const ClusterBoxes& own, const Particles& ownParticles,
                const ClusterBoxes& other, const int* otherCellStart) {
@@ -63,13 +58,14 @@ public:
         lists_.resize(clusters);
         const int piece = std::max(64, (clusters + 255) / 256);
         entries_.resize((clusters + piece - 1) / piece);
+        pruned_.resize(entries_.size());
         if (otherCellStart[cellCount(grid)] == 0) {
-            std::fill(lists_.begin(), lists_.end(), ClusterList{nullptr, 0});
+            std::fill(lists_.begin(), lists_.end(), ClusterList{});
             return;
         }
         device.forRanges(clusters, piece, [&](int begin, int end) {
-            std::vector<uint32_t>& entries = entries_[begin / piece];
-            buildPiece(begin, end, Search{grid, reach, own, other, otherCellStart}, entries);
+            buildPiece(begin, end, Search{grid, reach, own, other, otherCellStart}, entries_[begin / piece],
+                       pruned_[begin / piece]);
         });
     }
 
@@ -83,7 +79,7 @@ private:
     };
     static size_t cellCount(const Grid& g) { return size_t(g.cells.x) * g.cells.y * g.cells.z; }
 
-    void buildPiece(int begin, int end, const Search& s, std::vector<uint32_t>& entries) {
+    void buildPiece(int begin, int end, const Search& s, std::vector<uint32_t>& entries, std::vector<uint32_t>& pruned) {
         size_t used = 0;
         for (int first = begin; first < end; first += clustersTogether) {
             const int last = std::min(end, first + clustersTogether);
@@ -98,10 +94,10 @@ private:
             }
         }
         // The arena may have moved while it grew: only now are addresses known.
-        const uint32_t* next = entries.data();
-        for (int c = begin; c < end; ++c) {
-            lists_[c].clusters = next;
-            next += lists_[c].count;
+        pruned.resize(entries.size());
+        for (size_t c = size_t(begin), next = 0; c < size_t(end); next += lists_[c++].count) {
+            lists_[c].clusters = entries.data() + next;
+            lists_[c].pruned = pruned.data() + next;
         }
     }
 
@@ -175,7 +171,7 @@ private:
     }
 
     std::vector<ClusterList> lists_;
-    std::vector<std::vector<uint32_t>> entries_;   // one arena a piece, kept from step to step
+    std::vector<std::vector<uint32_t>> entries_, pruned_;   // one arena a piece, kept from step to step
 };
 
 }  // namespace spindrift::LANES

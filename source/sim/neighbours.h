@@ -1,6 +1,7 @@
 // The one neighbour loop. f(pair, j) is called with every particle j of the other set nearer than the support
 // radius R, the particle itself included when it is of the same set; with SIMD also with some that are further
-// away, which kernels turn into zeros.
+// away, which kernels turn into zeros. The first pass of a step, `Prune`, notes for the later ones, `Pruned`, which
+// clusters are worth a look; lists that are read but once a step are not pruned, `All`.
 #if defined(SPINDRIFT_SIM_NEIGHBOURS_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SPINDRIFT_SIM_NEIGHBOURS_H
 #undef SPINDRIFT_SIM_NEIGHBOURS_H
@@ -25,17 +26,32 @@ template <class R> HD inline Pair<R> makePair(const Constants& c, Vector<R> xi, 
     return {r, d2, squareRoot(d2 * R(c.inverseSupport2)), R(1) / (d2 + R(c.eta2))};
 }
 
+enum class Lists { All, Prune, Pruned };
+
 #ifdef SPINDRIFT_SIMD
-template <class F>
+// A group narrower than a cluster sees but a part of the hits, so that it can't prune.
+inline constexpr bool prunes = Group::size == clusterSize;
+
+template <Lists lists, class F>
 HD inline void forNeighbours(const View& v, const Neighbourhood& near, Group i, Vector<Wide> xi, const F& f) {
-    const ClusterList list = near.lists[i.first / clusterSize];
-    for (uint32_t k = 0; k < list.count; ++k) {
-        const Four j{int(list.clusters[k]) * clusterSize};
-        f(makePair(v.c, xi, load(near.position, j)), j);
+    ClusterList& list = near.lists[i.first / clusterSize];
+    const bool pruned = prunes && lists == Lists::Pruned;
+    const uint32_t* clusters = pruned ? list.pruned : list.clusters;
+    const uint32_t count = pruned ? list.prunedCount : list.count;
+    uint32_t kept = 0;
+    for (uint32_t k = 0; k < count; ++k) {
+        const Four j{int(clusters[k]) * clusterSize};
+        const Pair<Wide> pair = makePair(v.c, xi, load(near.position, j));
+        f(pair, j);
+        if constexpr (prunes && lists == Lists::Prune) {
+            list.pruned[kept] = clusters[k];
+            kept += any(pair.distance2 < Wide(v.c.support2));
+        }
     }
+    if constexpr (prunes && lists == Lists::Prune) list.prunedCount = kept;
 }
 #else
-template <class F>
+template <Lists, class F>
 HD inline void forNeighbours(const View& v, const Neighbourhood& near, int, Vector<real> xi, const F& f) {
     const Grid& g = v.grid;
     const real R = v.c.support;

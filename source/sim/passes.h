@@ -47,7 +47,7 @@ template <class Kernel> struct ComputeWallMass {
     View v;
     HD void operator()(Group i) const {
         Real<Group> sum = 0;
-        forNeighbours(v, v.wallsNearWalls, i, load(v.walls.position, i), [&](const auto& p, Four) LANE_CALL {
+        forNeighbours<Lists::All>(v, v.wallsNearWalls, i, load(v.walls.position, i), [&](const auto& p, Four) LANE_CALL {
             sum += Kernel::w(p.q);
         });
         const Real<Group> mass = Real<Group>(v.c.wallFactor * v.c.restDensity / v.c.kernelScale) / total(sum);
@@ -63,8 +63,8 @@ template <class Kernel> struct ComputeDensity {
     HD void operator()(Group i) const {
         const Vector<R> x = load(v.fluid.position, i);
         R fluid = 0, walls = 0;
-        forNeighbours(v, v.fluidNearFluid, i, x, [&](const auto& p, Four) LANE_CALL { fluid += Kernel::w(p.q); });
-        forNeighbours(v, v.wallsNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
+        forNeighbours<Lists::Prune>(v, v.fluidNearFluid, i, x, [&](const auto& p, Four) LANE_CALL { fluid += Kernel::w(p.q); });
+        forNeighbours<Lists::Prune>(v, v.wallsNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
             walls = mulAdd(load(v.walls.mass, j), Kernel::w(p.q), walls);
         });
         const R others = total(fluid) + R((v.c.selfWeight - 1) * Kernel::w(real(0)));
@@ -92,7 +92,7 @@ template <class Kernel> struct ExtrapolateWallPressure {
     HD void operator()(Group b) const {
         const Vector<R> gravity{v.c.gravity.x, v.c.gravity.y, v.c.gravity.z};
         R pressure = 0, weight = 0;
-        forNeighbours(v, v.fluidNearWalls, b, load(v.walls.position, b), [&](const auto& p, Four j) LANE_CALL {
+        forNeighbours<Lists::All>(v, v.fluidNearWalls, b, load(v.walls.position, b), [&](const auto& p, Four j) LANE_CALL {
             const R rho = load(v.fluid.density, j), w = Kernel::w(p.q);
             pressure = mulAdd(w * rho, mulAdd(rho, load(v.fluid.pressureTerm, j), dot(gravity, p.r)), pressure);
             weight += w;
@@ -114,11 +114,11 @@ template <class Kernel, class... Terms> struct ComputeForces<Kernel, TermList<Te
         const State<R> own = loadState<needs>(v.fluid, i);
         const R zero = 0;
         Acceleration<R> a{{zero, zero, zero}, {zero, zero, zero}};
-        forNeighbours(v, v.fluidNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
+        forNeighbours<Lists::Pruned>(v, v.fluidNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
             const State<R> other = loadState<needs>(v.fluid, j);
             (Terms::add(v.c, p, Kernel::g(p.q), own, other, a), ...);
         });
-        forNeighbours(v, v.wallsNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
+        forNeighbours<Lists::Pruned>(v, v.wallsNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
             (Terms::addWall(v.c, p, Kernel::g(p.q), own, Wall<R>{load(v.walls.mass, j), load(v.walls.pressureTerm, j)}, a), ...);
         });
         const R scale = v.c.gradientScale;

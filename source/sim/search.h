@@ -10,16 +10,16 @@
 #include "sim/cluster_lists.h"
 namespace spindrift::LANES {
 using Boxes = ClusterBoxes;
-using Lists = ClusterLists;
+using NeighbourLists = ClusterLists;
 }  // namespace spindrift::LANES
 #else
 #include "sim/view.h"
 namespace spindrift::LANES {
 // One particle at a time walks the rows of cells: no boxes, no lists.
 struct Boxes { template <class... A> void compute(A&&...) {} };
-struct Lists {
+struct NeighbourLists {
     template <class... A> void build(A&&...) {}
-    const ClusterList* data() const { return nullptr; }
+    ClusterList* data() const { return nullptr; }
 };
 }  // namespace spindrift::LANES
 #endif

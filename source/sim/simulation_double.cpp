@@ -9,7 +9,8 @@
 namespace spindrift {
 
 std::unique_ptr<Simulation> makeDoubleSimulation(const Scene& scene, const Placement& placement, int threads) {
-    return std::make_unique<doubles::SimulationOn<Omp>>(scene, placement, Omp(threads), "one by one, double");
+    const std::string name = "CPU, " + std::to_string(threads) + (threads == 1 ? " thread" : " threads") + ", double";
+    return std::make_unique<doubles::SimulationOn<Omp>>(scene, placement, Omp(threads), name);
 }
 
 }  // namespace spindrift

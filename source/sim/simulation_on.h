@@ -138,7 +138,7 @@ private:
     template <class Pass> void onWalls() { device_.forEach(walls_.slots(), Pass{view()}); }
     // Order and lists hold until two particles may have come closer by the skin.
     bool nothingMovedFar() const { return keepsLists && travel_ < skin() / 2; }
-    float skin() const { return 0.1f * supportRadius(scene_); }
+    float skin() const { return scene_.compute.skin * supportRadius(scene_); }
     void sortFluid() {
         if (!nothingMovedFar()) fluid_.sort(grid_);
     }
@@ -208,7 +208,7 @@ private:
     static constexpr bool keepsLists = clusterSize > 1;
     double travel_ = 1e30;      // m, bound of any particle's way since the lists were built
     Boxes boxes_, wallBoxes_;
-    Lists fluidNearFluid_, wallsNearFluid_, fluidNearWalls_, wallsNearWalls_;
+    NeighbourLists fluidNearFluid_, wallsNearFluid_, fluidNearWalls_, wallsNearWalls_;
 };
 
 template <class Device> Measurement SimulationOn<Device>::measure() {

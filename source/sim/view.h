@@ -40,12 +40,17 @@ struct Grid {
     HD int cell(Vector<real> x) const { return (rowZ(x.z) * cells.y + rowY(x.y)) * cells.x + cellX(x.x); }
 };
 
-// The clusters of another set that may hold neighbours of one cluster (SIMD lanes only).
-struct ClusterList { const uint32_t* clusters; uint32_t count; };
+// The clusters of another set that may hold neighbours of one cluster (SIMD lanes only): all that are near enough for the
+// life of the list, and of these the ones with a neighbour in this step.
+struct ClusterList {
+    const uint32_t* clusters;
+    uint32_t* pruned;
+    uint32_t count, prunedCount;
+};
 
 // Where the neighbours of one set's particles are found in another set (or in their own).
 struct Neighbourhood {
-    const ClusterList* lists;      // per cluster of the set; null without SIMD
+    ClusterList* lists;            // per cluster of the set; null without SIMD
     const int* cellStart;          // of the other set; slots [cellStart[c], cellStart[c+1]) are in cell c
     VectorField position;          // of the other set
 };
