@@ -81,7 +81,7 @@ template <class Kernel> Constants makeConstants(const Scene& s, double speed) {
     c.artificial = real(s.fluid.artificialViscosity * sound * h / 2);
     c.classicViscosity = real(s.fluid.viscosity * particleMass(s) / (rho0 * 3.14159265358979323846 * std::pow(R, 5)) / c.gradientScale);
     c.eta2 = real(0.01 * h * h);
-    c.accelerationLimit = s.simulation.accelerationLimit > 0 ? real(s.simulation.accelerationLimit) : real(1e12);
+    c.accelerationLimit = s.simulation.accelerationLimit > 0 ? real(s.simulation.accelerationLimit) : real(1e18);
     c.gravity = toVector(s.simulation.gravity);
 
     const Vec3 size = s.domain.max - s.domain.min;
