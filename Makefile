@@ -4,32 +4,37 @@ BUILD ?= build
 ARGS ?=
 CMAKE_ARGS ?=
 
-.PHONY: run test build bench meson sanitize install clean
+.PHONY: run test build configure bench meson sanitize install clean
 
-run: build
+# Only what it needs: the tests are built by `make build`.
+run: configure
+	@cmake --build $(BUILD) --target spindrift
 	@$(BUILD)/spindrift $(ARGS)
 
 test: build
 	ctest --test-dir $(BUILD) --output-on-failure
 
-bench: build
-	$(BUILD)/spindrift_bench $(ARGS)
+bench: configure
+	@cmake --build $(BUILD) --target spindrift
+	@$(BUILD)/spindrift bench $(ARGS)
 
-build: install
-	@test -f $(BUILD)/build.ninja || cmake -S . -B $(BUILD) -G Ninja $(CMAKE_ARGS)
+build: configure
 	@cmake --build $(BUILD)
+
+configure: install
+	@test -f $(BUILD)/build.ninja || cmake -S . -B $(BUILD) -G Ninja --log-level=WARNING $(CMAKE_ARGS)
 
 # The same targets from the same source lists with the other build system, and the same tests.
 meson: install
-	@test -f build-meson/build.ninja || meson setup build-meson --buildtype=release
+	@test -f build-meson/build.ninja || meson setup build-meson
 	meson test -C build-meson --print-errorlogs
 
-# AddressSanitizer and UndefinedBehaviorSanitizer over the unit tests.
+# AddressSanitizer and UndefinedBehaviorSanitizer, over all but the long runs and the window.
 sanitize: install
-	@test -f build-sanitize/build.ninja || cmake -S . -B build-sanitize -G Ninja -DSPINDRIFT_CUDA=OFF \
-		-DSPINDRIFT_BENCH=OFF -DSPINDRIFT_SANITIZE=address,undefined
-	@cmake --build build-sanitize --target unit_tests
-	ctest --test-dir build-sanitize --output-on-failure -L unit
+	@test -f build-sanitize/build.ninja || cmake -S . -B build-sanitize -G Ninja --log-level=WARNING \
+		-DSPINDRIFT_CUDA=OFF -DSPINDRIFT_SANITIZE=address,undefined
+	@cmake --build build-sanitize --target unit_tests determinism_tests render_tests
+	ctest --test-dir build-sanitize --output-on-failure -j 2 -LE "physics|app"
 
 install:
 	@third_party/install.sh

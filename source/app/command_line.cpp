@@ -5,6 +5,7 @@
 #include "app/headless.h"
 #include "app/scene_choice.h"
 #include "core/error.h"
+#include "measure/output_file.h"
 #include "scene/json.h"
 #ifdef SPINDRIFT_WINDOW
 #include "app/window/window.h"
@@ -96,7 +97,7 @@ std::string whyNoWindow() {
 int runScene(const RunOptions& options) {
     Scene scene = chooseScene(options.scene, options.choices);
     if (options.printConfig) {
-        fmt::print("{}", writeScene(scene));
+        writeText("-", writeScene(scene));
         return int(Exit::Ok);
     }
     if (const std::string why = whyNoWindow(); !scene.output.headless && !why.empty()) {
@@ -106,7 +107,14 @@ int runScene(const RunOptions& options) {
                    scene.output.screenshot);
     }
 #ifdef SPINDRIFT_WINDOW
-    if (!scene.output.headless) return runWindow(std::move(scene));
+    if (!scene.output.headless) {
+        const Output& output = scene.output;
+        for (const std::string& wanted : {output.screenshot, output.frames, output.csv, output.json})
+            if (!wanted.empty())
+                fmt::print(stderr, "spindrift: {}: not written by the window; add --headless\n",
+                           wanted);
+        return runWindow(std::move(scene));
+    }
 #endif
     return runHeadless(scene, options.quiet);
 }
@@ -240,7 +248,7 @@ int runCommandLine(int argc, const char* const* argv) {
     if (*runCommand) return runScene(run);
     if (*compareCommand) return compare(comparison);
     if (*benchCommand) return bench(benchmark);
-    if (*schemaCommand) fmt::print("{}", jsonSchema());
+    if (*schemaCommand) writeText("-", jsonSchema());
     return int(Exit::Ok);
 }
 

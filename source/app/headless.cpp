@@ -14,6 +14,7 @@
 #include <cmath>
 #include <filesystem>
 #include <optional>
+#include <set>
 
 namespace spindrift {
 namespace {
@@ -29,8 +30,14 @@ void requireOutputs(const Output& output) {
         throw Error(
             Exit::Output,
             "output.csv and output.json both want standard output; give one of them a file");
-    for (const std::string& file : {output.screenshot, output.csv, output.json})
-        if (!file.empty() && file != "-") requireWritable(file);
+    std::set<std::string> files;
+    for (const std::string& file : {output.screenshot, output.csv, output.json}) {
+        if (file.empty() || file == "-") continue;
+        requireWritable(file);
+        if (!files.insert(file).second)
+            throw Error(Exit::Output,
+                        file + ": two outputs want this file; give each a file of its own");
+    }
     if (!output.frames.empty()) requireFolder(output.frames);
 }
 

@@ -47,8 +47,8 @@ void drawLegend(Overlay& overlay, int width, int height, const LegendText& text,
     overlay.textSize(14 * unit);
     const float pad = 14 * unit, bar = std::min(270 * unit, 0.6f * float(width)), thick = 12 * unit;
     const float boxWidth = bar + 2 * pad + 12 * unit, boxHeight = 80 * unit;
-    const float left = float(width) - boxWidth - 16 * unit,
-                top = float(height) - boxHeight - 16 * unit;
+    // At the lower left: the tank's near corner stands at the lower right of the first view.
+    const float left = 16 * unit, top = float(height) - boxHeight - 16 * unit;
     overlay.panel(left, top, boxWidth, boxHeight, 8 * unit, {0.04f, 0.05f, 0.07f, 0.62f});
 
     const float x = std::round(left + pad + 6 * unit), titleLine = top + 23 * unit;
@@ -56,7 +56,9 @@ void drawLegend(Overlay& overlay, int width, int height, const LegendText& text,
     overlay.text(x, titleLine, text.title, bright);
     overlay.text(x + overlay.textWidth(text.title + " "), titleLine, text.unit, dim);
     const std::string note = std::string(colorMapName(map)) + ", " + text.note;
-    overlay.text(x + bar - overlay.textWidth(note), titleLine, note, dim);
+    const float titleWidth = overlay.textWidth(text.title + " " + text.unit + " ");
+    if (titleWidth + overlay.textWidth(note) <= bar)
+        overlay.text(x + bar - overlay.textWidth(note), titleLine, note, dim);
 
     const ColorTable table = colorTable(map);
     const float barTop = std::round(top + 34 * unit);

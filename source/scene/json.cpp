@@ -3,6 +3,7 @@
 #include "scene/historical.h"
 #include "scene/read_knobs.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -92,6 +93,7 @@ void write(const Json& json, const std::string& indent, std::string& out) {
 
 // What follows "=": JSON if it is, numbers with commas as a list, else plain text.
 Json looseValue(const std::string& text) {
+    if (text.empty()) return text;
     for (const std::string& attempt : {text, "[" + text + "]"}) try {
             return parseJson(attempt, "--set");
         } catch (const Error&) {}
@@ -147,9 +149,17 @@ void setKnob(Scene& scene, const std::string& assignment, const std::string& ori
         constexpr bool isText = std::is_same_v<std::decay_t<decltype(knobValue)>, std::string>;
         assign(knobValue, isText && !value.is_string() ? Json(text) : value, knob, place, path);
     });
-    if (!found)
-        place.fail(path, fmt::format("unknown knob; {}{}", adviceFor("", path, known), place.hint));
-    scene = changed;
+    if (found) {
+        scene = changed;
+        return;
+    }
+    // Within a body that there is, the keys of that body are meant.
+    const size_t bracket = path.find("].");
+    std::string body = bracket == std::string::npos ? "" : path.substr(0, bracket + 2);
+    if (std::none_of(known.begin(), known.end(), [&](auto& k) { return k.starts_with(body); }))
+        body.clear();
+    place.fail(path, fmt::format("unknown knob; {}{}",
+                                 adviceFor(body, path.substr(body.size()), known), place.hint));
 }
 
 void requireRanges(const Scene& scene, const std::string& place) {

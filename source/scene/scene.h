@@ -98,7 +98,7 @@ struct Camera {
 
 struct View {
     ColorBy colorBy = ColorBy::Velocity;
-    ColorMap colorMap = ColorMap::Viridis;
+    ColorMap colorMap = ColorMap::Coolwarm;
     RangeMode range = RangeMode::Run;
     float rangeMin = 0, rangeMax = 1;           // in the unit of the coloured quantity, used by fixed
     bool showWalls = false;                     // draws boundary particles

@@ -50,7 +50,7 @@ struct ClusterBoxes {
 // The lists of all clusters of one set (own) in a set (other).
 class ClusterLists {
 public:
-    ClusterList* data() const { return const_cast<ClusterList*>(lists_.data()); }
+    ClusterList* data() { return lists_.data(); }
 
     void build(Omp& device, const Grid& grid, float reach, const ClusterBoxes& own, const Particles& ownParticles,
                const ClusterBoxes& other, const int* otherCellStart) {

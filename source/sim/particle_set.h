@@ -15,9 +15,11 @@
 
 namespace spindrift::LANES {
 
+enum class Kind { Fluid, Walls };
+
 template <class Device> class ParticleSet {
 public:
-    explicit ParticleSet(Device& device) : device_(device) {}
+    ParticleSet(Device& device, Kind kind) : device_(device), kind_(kind) {}
 
     int slots() const { return slots_; }
     const int* cellStart() const { return cellStart_.data(); }
@@ -88,8 +90,11 @@ private:
     void resize(int slots) {
         slots_ = slots;
         id_.resize(slots);
-        for (auto* field : {&position_, &velocity_, &acceleration_}) field->resize(vectorSize(slots));
-        for (auto* field : {&density_, &inverseDensity_, &pressureTerm_, &mass_}) field->resize(slots);
+        for (auto* field : {&position_, &velocity_}) field->resize(vectorSize(slots));
+        pressureTerm_.resize(slots);
+        if (kind_ == Kind::Walls) return mass_.resize(slots);
+        acceleration_.resize(vectorSize(slots));
+        for (auto* field : {&density_, &inverseDensity_}) field->resize(slots);
     }
     template <class T> std::vector<T> copy(const Buffer<T, Device>& buffer) const {
         std::vector<T> host(buffer.size());
@@ -98,6 +103,7 @@ private:
     }
 
     Device& device_;
+    Kind kind_;
     int slots_ = 0;
     Buffer<int, Device> id_{device_}, sortedId_{device_}, key_{device_}, order_{device_}, cellStart_{device_};
     Buffer<real, Device> position_{device_}, velocity_{device_}, acceleration_{device_};

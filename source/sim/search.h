@@ -19,7 +19,7 @@ namespace spindrift::LANES {
 struct Boxes { template <class... A> void compute(A&&...) {} };
 struct NeighbourLists {
     template <class... A> void build(A&&...) {}
-    ClusterList* data() const { return nullptr; }
+    ClusterList* data() { return nullptr; }
 };
 }  // namespace spindrift::LANES
 #endif

@@ -174,7 +174,7 @@ private:
         wallsNearWalls_ = {};
     }
 
-    View view() const {
+    View view() {
         View v{fluid_.view(), walls_.view(),
                {fluidNearFluid_.data(), fluid_.cellStart(), fluid_.view().position},
                {wallsNearFluid_.data(), walls_.cellStart(), walls_.view().position},
@@ -202,7 +202,7 @@ private:
     Constants constants_{};
     std::vector<Row> plan_;
     std::vector<PassTime> times_;
-    ParticleSet<Device> fluid_{device_}, walls_{device_};
+    ParticleSet<Device> fluid_{device_, Kind::Fluid}, walls_{device_, Kind::Walls};
     Buffer<StepState, Device> state_{device_};
     Buffer<Extremes, Device> extremes_{device_};
     static constexpr bool keepsLists = clusterSize > 1;

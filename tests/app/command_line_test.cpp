@@ -1,83 +1,16 @@
 // The real program, as a shell sees it: each mistake by its words and exit code, and what it prints
 // when all is well.
-#include "core/error.h"
 #include "render/image.h"
 #include "scene/json.h"
 #include "scene/read_knobs.h"
+#include "shell.h"
 
-#include <gtest/gtest.h>
-#include <sys/wait.h>
-
-#include <array>
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
+#include <algorithm>
 
 namespace spindrift {
 namespace {
 
-namespace fs = std::filesystem;
-
-struct Outcome {
-    int code;
-    std::string text;
-};
-
-std::string slurp(const fs::path& path) {
-    std::ifstream stream(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-// Runs in a folder of its own, without a display.
-class CommandLine : public ::testing::Test {
-protected:
-    CommandLine() {
-        folder_ = fs::temp_directory_path() /
-                  ("spindrift_" + std::to_string(getpid()) + "_" +
-                   ::testing::UnitTest::GetInstance()->current_test_info()->name());
-        fs::create_directories(folder_);
-    }
-    ~CommandLine() override { fs::remove_all(folder_); }
-
-    // Standard output, and standard error behind `redirection`; see "2>&1".
-    Outcome call(const std::string& arguments, const char* redirection = "2>&1") const {
-        const std::string command = "cd '" + folder_.string() +
-                                    "' && env -u DISPLAY -u WAYLAND_DISPLAY -u SDL_VIDEODRIVER "
-                                    "timeout 60 '" SPINDRIFT_PROGRAM "' " +
-                                    arguments + " " + redirection;
-        std::FILE* pipe = popen(command.c_str(), "r");
-        Outcome outcome{-1, ""};
-        std::array<char, 4096> buffer;
-        for (size_t n; (n = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
-            outcome.text.append(buffer.data(), n);
-        const int status = pclose(pipe);
-        outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + status;
-        return outcome;
-    }
-
-    void expectMistake(const std::string& arguments, Exit code, const std::string& words) const {
-        const Outcome outcome = call(arguments);
-        EXPECT_EQ(outcome.code, int(code)) << arguments << "\n" << outcome.text;
-        EXPECT_NE(outcome.text.find(words), std::string::npos) << arguments << "\n"
-                                                               << words << "\nin: " << outcome.text;
-        EXPECT_EQ(std::count(outcome.text.begin(), outcome.text.end(), '\n'), 1)
-            << "one line: " << outcome.text;
-    }
-
-    std::string write(const std::string& name, const std::string& text) const {
-        std::ofstream(folder_ / name) << text;
-        return name;
-    }
-
-    std::vector<std::string> files() const {
-        std::vector<std::string> names;
-        for (auto& entry : fs::recursive_directory_iterator(folder_))
-            names.push_back(entry.path().filename().string());
-        return names;
-    }
-
-    fs::path folder_;
-};
+class CommandLine : public Shell {};
 
 const std::string Small = "test/ball_drop_small --headless --threads 2 ";
 
@@ -101,6 +34,9 @@ TEST_F(CommandLine, MistakesInTheArguments) {
     expectMistake(Small + "--set fluid.viscosity=nan", Exit::Usage, "expected a number in Pa s");
     expectMistake(Small + "--set fluid.viscosity=-1", Exit::Usage,
                   "out of range, allowed: 0 to 1000 Pa s");
+    expectMistake(Small + "--set fluid.viscosity=", Exit::Usage, "expected a number in Pa s, found \"\"");
+    expectMistake(Small + "--set fluid.bodies[0].height=1", Exit::Usage,
+                  "unknown knob; known here: center, radius, shape, velocity");
     expectMistake("compare", Exit::Usage, "required");
 }
 
@@ -134,6 +70,7 @@ TEST_F(CommandLine, MistakesWithOutputsAreFoundBeforeTheRun) {
     expectMistake(endless + "--frames /proc/frames", Exit::Output,
                   "/proc/frames: can't be written");
     expectMistake(endless + "--csv - --json -", Exit::Output, "both want standard output");
+    expectMistake(endless + "--csv run --json run", Exit::Output, "two outputs want this file");
     expectMistake(endless + "--csv a.csv --screenshot missing/a.png", Exit::Output,
                   "missing/a.png");
     EXPECT_TRUE(files().empty()) << files().front();
@@ -198,18 +135,6 @@ TEST_F(CommandLine, WritesWhatWasAskedFor) {
     EXPECT_TRUE(fs::exists(folder_ / "frames/frame_00001.png"));
     for (const std::string& name : files())
         EXPECT_EQ(name.find(".part"), std::string::npos) << name;
-}
-
-TEST_F(CommandLine, WithoutADisplayItRendersOffScreen) {
-    const Outcome outcome = call("test/ball_drop_small --steps 5 --size 160x120");
-    ASSERT_EQ(outcome.code, 0) << outcome.text;
-    EXPECT_NE(outcome.text.find("no "), std::string::npos);
-    EXPECT_NE(outcome.text.find("rendering off screen, to spindrift.png"), std::string::npos)
-        << outcome.text;
-    EXPECT_NE(outcome.text.find((folder_ / "spindrift.png").string()), std::string::npos)
-        << outcome.text;
-    EXPECT_EQ(readPng((folder_ / "spindrift.png").string()).width, 160);
-    EXPECT_NE(outcome.text.find("density error"), std::string::npos) << outcome.text;
 }
 
 TEST_F(CommandLine, ADivergedRunSaysSoAndKeepsItsData) {

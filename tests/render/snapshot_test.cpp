@@ -84,7 +84,7 @@ TEST(Snapshot, LegendIsDrawnWithBarAndText) {
                 with = picture({}, settings, 4, 800, 600);
     int yellow = 0, white = 0;
     for (int y = 400; y < 600; ++y)
-        for (int x = 400; x < 800; ++x) {
+        for (int x = 0; x < 400; ++x) {
             const Rgb c = pixel(with, x, y);
             yellow += c.r > 230 && c.g > 200 && c.b < 60;  // viridis' upper end
             white += c.r > 200 && c.g > 200 && c.b > 200;  // letters

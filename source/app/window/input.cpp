@@ -73,8 +73,11 @@ void dragMouse(Ui& ui, float dx, float dy) {
 }
 
 void turnWheel(Ui& ui, float notches) {
+    const Scene& scene = ui.player.scene;
+    const float diagonal = length(scene.domain.max - scene.domain.min);
     if (SDL_GetModState() & KMOD_CTRL) {
-        ui.stirRadius *= std::pow(1.15f, notches);
+        const float wanted = ui.stirRadius * std::pow(1.15f, notches);
+        ui.stirRadius = std::clamp(wanted, scene.simulation.spacing, diagonal);
         ui.stale = true;
         return;
     }
@@ -82,9 +85,8 @@ void turnWheel(Ui& ui, float notches) {
     const Vec3 anchor = ui.frame.surfaceAt(int(ui.mouseX), int(ui.mouseY))
                             .value_or(camera.onPlane(ui.mouseX, ui.mouseY, float(ui.area.width),
                                                      float(ui.area.height), camera.target));
-    const Vec3 size = ui.player.scene.domain.max - ui.player.scene.domain.min;
     const float wanted = camera.distance * std::pow(0.85f, notches);
-    const float allowed = std::clamp(wanted, 0.02f * length(size), 20 * length(size));
+    const float allowed = std::clamp(wanted, 0.02f * diagonal, 20 * diagonal);
     camera.zoom(allowed / camera.distance, anchor);
     ui.moveCamera(camera);
 }

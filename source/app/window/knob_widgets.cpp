@@ -33,7 +33,8 @@ bool edit(float& value, const Knob& knob) {
     const std::string format = formatOf(knob);
     if (isOpen(knob)) {
         const float speed = 0.005f * std::max(std::abs(value), 0.1f);
-        return ImGui::DragFloat("", &value, speed, knob.min, knob.max, format.c_str());
+        return ImGui::DragFloat("", &value, speed, knob.min, knob.max, format.c_str(),
+                                ImGuiSliderFlags_AlwaysClamp);
     }
     return ImGui::SliderFloat("", &value, knob.min, knob.max, format.c_str(), scaleOf(knob));
 }
@@ -48,7 +49,7 @@ bool edit(std::string& value, const Knob&) { return ImGui::InputText("", &value)
 
 bool edit(Vec3& value, const Knob& knob) {
     return ImGui::DragFloat3("", &value.x, std::min(0.05f, 0.001f * (knob.max - knob.min)),
-                             knob.min, knob.max, "%.3g");
+                             knob.min, knob.max, "%.3g", ImGuiSliderFlags_AlwaysClamp);
 }
 
 template <class E>

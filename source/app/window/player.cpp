@@ -25,18 +25,18 @@ constexpr size_t longestHistory = 1024;
 }  // namespace
 
 void History::add(const Measurement& m) {
-    if (!time.empty() && m.time <= time.back()) return;
+    if (!time.empty() && (m.time <= time.back() || m.time < time.back() + least_)) return;
     std::vector<float>* curves[] = {&time, &kinetic, &potential, &total, &densityError};
+    if (time.size() >= longestHistory) {
+        for (std::vector<float>* curve : curves) {
+            for (size_t i = 0; i < curve->size() / 2; ++i) (*curve)[i] = (*curve)[2 * i];
+            curve->resize(curve->size() / 2);
+        }
+        least_ = m.time / double(time.size());
+    }
     const double values[] = {m.time, m.kineticEnergy, m.potentialEnergy,
                              m.kineticEnergy + m.potentialEnergy, m.densityError};
-    for (size_t c = 0; c < std::size(curves); ++c) {
-        std::vector<float>& curve = *curves[c];
-        if (curve.size() >= longestHistory) {
-            for (size_t i = 0; i < curve.size() / 2; ++i) curve[i] = curve[2 * i];
-            curve.resize(curve.size() / 2);
-        }
-        curve.push_back(float(values[c]));
-    }
+    for (size_t c = 0; c < std::size(curves); ++c) curves[c]->push_back(float(values[c]));
 }
 
 Player::Player(Scene s) {

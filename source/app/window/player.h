@@ -8,10 +8,13 @@
 
 namespace spindrift {
 
-// Curves over the whole run; when they grow long every second sample goes.
+// Curves over the whole run, evenly spaced; when they grow long every second sample goes.
 struct History {
     std::vector<float> time, kinetic, potential, total, densityError;  // s, J, J, J, 1
     void add(const Measurement&);
+
+private:
+    double least_ = 0;  // s between samples
 };
 
 class Player {

@@ -1,0 +1,152 @@
+// The tree keeps its shape: which folder may include which, every source file in one list, tests for each folder.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace spindrift {
+namespace {
+
+namespace fs = std::filesystem;
+const fs::path Root = SPINDRIFT_SOURCE_DIR, Source = Root / "source";
+
+// docs/DESIGN.md, "The tree".
+const std::map<std::string, std::set<std::string>> MayInclude = {
+    {"core", {"core"}},
+    {"scene", {"core", "scene"}},
+    {"device", {"core", "device"}},
+    {"sim", {"core", "scene", "device", "sim"}},
+    {"measure", {"core", "scene", "sim", "measure"}},
+    {"render", {"core", "render"}},
+    {"app", {"core", "scene", "sim", "measure", "render", "app"}},
+};
+
+// Headers of libraries that only some files may see; a file is given by its path below source/.
+struct LibraryRule {
+    const char *name, *header, *allowed;
+};
+const LibraryRule LibraryRules[] = {
+    {"SDL", "SDL.*", "app/window/.*"},
+    {"Dear ImGui", "(backends/)?imgui.*", "app/window/.*"},
+    {"OpenGL and EGL", "(GL|EGL|GLES.?|KHR)/.*", "(render|app/window)/.*"},
+    {"CUDA", "(cuda|cub/|thrust/|nv/|cooperative_groups).*", "device/.*|.*\\.cu|render/[a-z_]*interop[a-z_]*\\..*"},
+};
+
+bool matches(const std::string& text, const char* pattern) { return std::regex_match(text, std::regex(pattern)); }
+
+// Why `line` may not stand in `file`; "" when it may.
+std::string violation(const std::string& file, const std::string& line) {
+    std::smatch found;
+    static const std::regex include("\\s*#\\s*include\\s*([\"<])([^\">]+)[\">].*");
+    if (!std::regex_match(line, found, include)) return "";
+    const std::string header = found[2];
+    for (const LibraryRule& rule : LibraryRules)
+        if (matches(header, rule.header) && !matches(file, rule.allowed))
+            return std::string(rule.name) + " headers are for " + rule.allowed;
+    if (found[1] == "<") return "";
+    const std::string from = file == "main.cpp" ? "app" : file.substr(0, file.find('/'));
+    const std::string to = header.substr(0, header.find('/'));
+    if (!MayInclude.contains(to)) return "name the file from source/ on: \"folder/file.h\"";
+    if (!MayInclude.contains(from)) return "source/" + from + " is a folder without a rule";
+    return MayInclude.at(from).contains(to) ? "" : from + " may not include " + to;
+}
+
+std::vector<std::string> linesOf(const fs::path& path) {
+    std::vector<std::string> lines;
+    std::ifstream stream(path);
+    for (std::string line; std::getline(stream, line);) lines.push_back(line);
+    return lines;
+}
+
+std::vector<fs::path> filesBelow(const fs::path& folder) {
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+        if (entry.is_regular_file()) files.push_back(entry.path());
+    return files;
+}
+
+TEST(Structure, CheckerFindsViolations) {
+    for (const auto& [file, line] : std::vector<std::pair<std::string, std::string>>{
+             {"core/vec.h", "#include \"scene/scene.h\""},
+             {"scene/json.cpp", "#include \"sim/simulation.h\""},
+             {"sim/passes.h", "  #  include \"render/renderer.h\"  // why not"},
+             {"render/renderer.cpp", "#include \"sim/simulation.h\""},
+             {"measure/health.cpp", "#include \"app/frame.h\""},
+             {"device/omp.h", "#include \"scene/scene.h\""},
+             {"sim/passes.h", "#include \"view.h\""},
+             {"extra/new.h", "#include \"core/vec.h\""},
+             {"app/frame.cpp", "#include <SDL.h>"},
+             {"app/headless.cpp", "#include <EGL/egl.h>"},
+             {"sim/view.h", "#include <GL/glew.h>"},
+             {"render/font.cpp", "#include <imgui.h>"},
+             {"app/panel.cpp", "#include <backends/imgui_impl_sdl.h>"},
+             {"sim/view.h", "#include <cuda_runtime.h>"},
+             {"render/renderer.cpp", "#include <cuda_gl_interop.h>"}})
+        EXPECT_NE(violation(file, line), "") << file << ": " << line;
+}
+
+TEST(Structure, CheckerLetsTheRestPass) {
+    for (const auto& [file, line] : std::vector<std::pair<std::string, std::string>>{
+             {"sim/passes.h", "#include \"core/vec.h\""},
+             {"sim/passes.h", "// #include \"render/renderer.h\""},
+             {"main.cpp", "#include \"app/command_line.h\""},
+             {"app/window/window.cpp", "#include <SDL.h>"},
+             {"render/gl.h", "#include <GL/glew.h>"},
+             {"device/cuda.h", "#include <cuda_runtime.h>"},
+             {"sim/simulation_cuda.cu", "#include <cub/cub.cuh>"},
+             {"render/cuda_interop.cpp", "#include <cuda_gl_interop.h>"},
+             {"core/vec.h", "#include <cmath>"}})
+        EXPECT_EQ(violation(file, line), "") << file << ": " << line;
+}
+
+TEST(Structure, IncludesKeepTheRules) {
+    int includes = 0;
+    for (const fs::path& path : filesBelow(Source)) {
+        const std::string file = fs::relative(path, Source).string();
+        for (const std::string& line : linesOf(path)) {
+            includes += line.starts_with("#include");
+            EXPECT_EQ(violation(file, line), "") << "source/" << file << ": " << line;
+        }
+    }
+    EXPECT_GT(includes, 100) << "found too few includes to believe it";
+}
+
+TEST(Structure, EverySourceFileIsInOneList) {
+    std::map<fs::path, int> listed;
+    for (const fs::path& top : {Source, Root / "tests"})
+        for (const fs::path& list : filesBelow(top))
+            if (list.filename() == "sources.txt")
+                for (const std::string& name : linesOf(list))
+                    ++listed[(list.parent_path() / name).lexically_normal()];
+    for (const auto& [path, times] : listed) {
+        EXPECT_TRUE(fs::exists(path)) << path;
+        EXPECT_EQ(times, 1) << path;
+    }
+    for (const fs::path& path : filesBelow(Source)) {
+        const bool compiled = path.extension() == ".cpp" || path.extension() == ".cu";
+        EXPECT_TRUE(!compiled || path == Source / "main.cpp" || listed.contains(path))
+            << path << " is in no sources.txt";
+    }
+    for (const fs::path& path : filesBelow(Root / "tests")) {
+        const bool test = path.filename().string().ends_with("_test.cpp");
+        EXPECT_TRUE(!test || listed.contains(path)) << path << " is in no sources.txt: it never runs";
+    }
+}
+
+TEST(Structure, UnitTestsMirrorTheSources) {
+    for (const char* folder : {"core", "scene", "sim", "measure", "render"})
+        EXPECT_TRUE(fs::is_directory(Root / "tests/unit" / folder)) << folder << " has no unit test";
+    for (const auto& entry : fs::directory_iterator(Root / "tests/unit")) {
+        if (!entry.is_directory()) continue;
+        EXPECT_TRUE(MayInclude.contains(entry.path().filename().string())) << entry.path() << " mirrors no folder";
+        EXPECT_FALSE(fs::is_empty(entry.path())) << entry.path();
+    }
+}
+
+}  // namespace
+}  // namespace spindrift

@@ -1,0 +1,18 @@
+# CUDA is compiled when nvcc is there and never required.
+include(CheckLanguage)
+if(NOT CMAKE_CUDA_COMPILER AND NOT DEFINED ENV{CUDACXX} AND EXISTS /usr/local/cuda/bin/nvcc)
+  set(CMAKE_CUDA_COMPILER /usr/local/cuda/bin/nvcc)
+endif()
+set(CMAKE_CUDA_ARCHITECTURES ${SPINDRIFT_CUDA_ARCHITECTURES})
+check_language(CUDA)
+if(CMAKE_CUDA_COMPILER)
+  enable_language(CUDA)
+  # CMake 3.25 does not know C++20 for nvcc 13.
+  set(CMAKE_CUDA20_STANDARD_COMPILE_OPTION -std=c++20)
+  set(CMAKE_CUDA20_EXTENSION_COMPILE_OPTION -std=c++20)
+  set(CMAKE_CUDA_STANDARD 20)
+  add_library(cuda_passes OBJECT tests/cuda/passes.cu)
+  target_include_directories(cuda_passes PRIVATE source)
+else()
+  message(STATUS "no nvcc: CUDA code is not compiled")
+endif()
