@@ -37,8 +37,8 @@ public:
     // Calls body(begin, end) for pieces of [0, n); pieces begin at multiples of `piece`.
     template <class Body> void forRanges(int n, int piece, const Body& body) {
         const int pieces = (n + piece - 1) / piece;
-        if (pieces == 1) return body(0, n);
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads_)
+        const int threads = std::min(threads_, (pieces + 3) / 4);   // waking a thread costs more than a few pieces
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads) if (threads > 1)
         for (int k = 0; k < pieces; ++k) body(k * piece, std::min(n, (k + 1) * piece));
     }
 

@@ -81,8 +81,8 @@ private:
 
     void buildPiece(int begin, int end, const Search& s, std::vector<uint32_t>& entries, std::vector<uint32_t>& pruned) {
         size_t used = 0;
-        for (int first = begin; first < end; first += clustersTogether) {
-            const int last = std::min(end, first + clustersTogether);
+        for (int first = begin, last; first < end; first = last) {
+            last = endOfGroup(s, first, end);
             const RowRanges ranges = findRows(s, first, last);
             if (entries.size() < used + (ranges.clusters + width) * clustersTogether)
                 entries.resize(2 * (used + (ranges.clusters + width) * clustersTogether));
@@ -101,8 +101,22 @@ private:
         }
     }
 
-    // The other set's clusters that may be near, one range a row of cells; found for a few clusters at once.
+    // Clusters whose rows are searched together: a few that lie in one row.
     static constexpr int clustersTogether = 4;
+    static int endOfGroup(const Search& s, int first, int end) {
+        const float rowSize = 1.01f / s.grid.perMetreRow;
+        auto sameRow = [&](int c) {
+            for (int k : {1, 2})
+                if (std::max(s.own.high[k][c], s.own.high[k][first]) - std::min(s.own.low[k][c], s.own.low[k][first]) > rowSize)
+                    return false;
+            return true;
+        };
+        int last = first + 1;
+        while (last < end && last < first + clustersTogether && sameRow(last)) ++last;
+        return last;
+    }
+
+    // The other set's clusters that may be near, one range a row of cells.
     struct RowRanges {
         static constexpr int most = 512;
         uint32_t first[most], last[most];

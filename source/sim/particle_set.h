@@ -73,17 +73,28 @@ public:
     std::vector<Particle> download(int count, Vec3 origin) const {
         std::vector<int> id = copy(id_);
         std::vector<real> x = copy(position_), u = copy(velocity_), a = copy(acceleration_);
-        std::vector<real> rho = copy(density_), term = copy(pressureTerm_), inverse = copy(inverseDensity_);
+        std::vector<real> rho = copy(density_), term = copy(pressureTerm_);
         const Particles host{slots_, id.data(), {x.data()}, {u.data()}, {a.data()},
-                             {rho.data()}, {inverse.data()}, {term.data()}, {nullptr}};
-        auto toVec3d = [](Vector<real> v) { return Vec3d{double(v.x), double(v.y), double(v.z)}; };
+                             {rho.data()}, {nullptr}, {term.data()}, {nullptr}};
         std::vector<Particle> out(count);
-        for (int i = 0; i < slots_; ++i) {
-            if (id[i] < 0) continue;
-            out[id[i]] = {id[i], toVec3d(load(host.position, i)) + toDouble(origin), toVec3d(load(host.velocity, i)),
-                          toVec3d(load(host.acceleration, i)), double(rho[i]), double(pressureOf(host, i))};
-        }
+        for (int i = 0; i < slots_; ++i)
+            if (id[i] >= 0) out[id[i]] = describe(host, i, origin);
         return out;
+    }
+    // Only the slots around the particle with this id are fetched.
+    Particle downloadOne(int id, Vec3 origin) const {
+        const std::vector<int> ids = copy(id_);
+        const int slot = int(std::find(ids.begin(), ids.end(), id) - ids.begin());
+        CHECK(slot < slots_);
+        const int first = slot / clusterSize * clusterSize;
+        auto vectors = [&](const Buffer<real, Device>& b) { return copy(b, vectorOffset(first, 0), vectorSize(clusterSize)); };
+        auto numbers = [&](const Buffer<real, Device>& b) { return copy(b, size_t(first), size_t(clusterSize)); };
+        std::vector<real> x = vectors(position_), u = vectors(velocity_), a = vectors(acceleration_);
+        std::vector<real> rho = numbers(density_), term = numbers(pressureTerm_);
+        std::vector<int> own(ids.begin() + first, ids.begin() + first + clusterSize);
+        const Particles host{clusterSize, own.data(), {x.data()}, {u.data()}, {a.data()},
+                             {rho.data()}, {nullptr}, {term.data()}, {nullptr}};
+        return describe(host, slot - first, origin);
     }
 
 private:
@@ -96,9 +107,15 @@ private:
         acceleration_.resize(vectorSize(slots));
         for (auto* field : {&density_, &inverseDensity_}) field->resize(slots);
     }
-    template <class T> std::vector<T> copy(const Buffer<T, Device>& buffer) const {
-        std::vector<T> host(buffer.size());
-        device_.download(host.data(), buffer.data(), buffer.size());
+    static Particle describe(const Particles& host, int i, Vec3 origin) {
+        auto toVec3d = [](Vector<real> v) { return Vec3d{double(v.x), double(v.y), double(v.z)}; };
+        return {host.id[i], toVec3d(load(host.position, i)) + toDouble(origin), toVec3d(load(host.velocity, i)),
+                toVec3d(load(host.acceleration, i)), double(load(host.density, i)), double(pressureOf(host, i))};
+    }
+    template <class T> std::vector<T> copy(const Buffer<T, Device>& buffer) const { return copy(buffer, 0, buffer.size()); }
+    template <class T> std::vector<T> copy(const Buffer<T, Device>& buffer, size_t first, size_t count) const {
+        std::vector<T> host(count);
+        device_.download(host.data(), buffer.data() + first, count);
         return host;
     }
 

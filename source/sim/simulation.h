@@ -14,7 +14,7 @@ namespace spindrift {
 // One row of the plan: a pass's name and the wall time it took since the last resetTimes().
 struct PassTime { const char* name; double ms; int64_t runs; };
 
-// Smallest and largest value among the vertices written.
+// Where the values of the vertices lie, a few outliers on either side left out (0.5 % each): what a colour scale needs.
 struct Range { float min, max; };
 
 // What a run says of itself. Energies in J, momentum in kg m/s, lengths in m; sums in double precision.
@@ -57,8 +57,9 @@ public:
     virtual Range writeVertices(Vertex* out, ColorBy, bool withWalls) = 0;
 
     virtual Measurement measure() = 0;
-    // All fluid particles, in the order of their ids.
+    // All fluid particles, in the order of their ids; one of them by its id in [0, fluidCount).
     virtual std::vector<Particle> particles() = 0;
+    virtual Particle particle(int id) = 0;
 
     virtual std::vector<PassTime> times() const = 0;
     virtual void resetTimes() = 0;

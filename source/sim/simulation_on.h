@@ -16,6 +16,7 @@
 #include "sim/simulation.h"
 
 #include <chrono>
+#include <numeric>
 #include <string>
 
 namespace spindrift::LANES {
@@ -69,7 +70,8 @@ public:
 
     Range writeVertices(Vertex* out, ColorBy by, bool withWalls) override {
         const View v = view();
-        if (withWalls) write<PlainValue>(v.walls, out);
+        ValueRange unused;
+        if (withWalls) device_.reduce(v.walls.slots, WriteVertices<PlainValue>{v.walls, out}, &unused);
         switch (by) {
             case ColorBy::Plain: return write<PlainValue>(v.fluid, out);
             case ColorBy::Velocity: return write<SpeedValue>(v.fluid, out);
@@ -83,6 +85,7 @@ public:
 
     Measurement measure() override;
     std::vector<Particle> particles() override { return fluid_.download(fluidCount_, scene_.domain.min); }
+    Particle particle(int id) override { return fluid_.downloadOne(id, scene_.domain.min); }
 
     std::vector<PassTime> times() const override {
         std::vector<PassTime> rows;
@@ -189,7 +192,18 @@ private:
     template <class Value> Range write(const Particles& p, Vertex* out) {
         ValueRange range;
         device_.reduce(p.slots, WriteVertices<Value>{p, out}, &range);
-        return {range.low, range.high};
+        if (!(range.high > range.low)) return {range.low, range.high};
+        Histogram histogram;
+        device_.reduce(p.slots, CountValues<Value>{p, range}, &histogram);
+        return withoutOutliers(range, histogram);
+    }
+    static Range withoutOutliers(ValueRange range, const Histogram& h) {
+        const int all = std::accumulate(h.count, h.count + Histogram::bins, 0), outliers = all / 200;
+        int low = 0, high = Histogram::bins - 1;
+        for (int n = h.count[low]; n <= outliers && low < high; n += h.count[low]) ++low;
+        for (int n = h.count[high]; n <= outliers && high > low; n += h.count[high]) --high;
+        const float bin = (range.high - range.low) / (Histogram::bins - 1);
+        return {range.low + bin * float(low), std::min(range.high, range.low + bin * float(high + 1))};
     }
 
     Device device_;
@@ -221,7 +235,7 @@ template <class Device> Measurement SimulationOn<Device>::measure() {
     Measurement m;
     m.time = state.time, m.dt = state.dt, m.steps = state.steps;
     m.kineticEnergy = mass * t.speed2 / 2;
-    m.potentialEnergy = -mass * n * dot(toDouble(scene_.simulation.gravity), center);
+    m.potentialEnergy = mass * n * dot(-1.0 * toDouble(scene_.simulation.gravity), center) + 0.0;   // no minus zero
     m.momentum = mass * Vec3d{t.velocity[0], t.velocity[1], t.velocity[2]};
     m.centerOfMass = center + toDouble(scene_.domain.min);
     m.meanDensity = t.density / n;

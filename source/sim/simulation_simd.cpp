@@ -17,6 +17,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <type_traits>
 

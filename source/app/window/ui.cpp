@@ -106,9 +106,8 @@ void Ui::pick() {
 }
 
 void Ui::refreshPicked() {
-    if (!picked) return;
-    const std::vector<Particle> all = player.simulation().particles();
-    if (size_t(picked->id) < all.size()) picked = all[size_t(picked->id)];
+    if (picked && picked->id < player.simulation().fluidCount())
+        picked = player.simulation().particle(picked->id);
 }
 
 std::vector<Ring> Ui::rings() const {

@@ -35,7 +35,7 @@ struct Screen {
         const std::string driver = SDL_GetCurrentVideoDriver();
         if (driver == "offscreen" || driver == "dummy") {
             SDL_Quit();
-            noDisplay("there is no screen");
+            noDisplay("the screen that DISPLAY or WAYLAND_DISPLAY names does not answer");
         }
         SDL_GL_SetAttribute(SDL_GL_CONTEXT_MAJOR_VERSION, 4);
         SDL_GL_SetAttribute(SDL_GL_CONTEXT_MINOR_VERSION, 5);

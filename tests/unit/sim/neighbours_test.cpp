@@ -146,6 +146,30 @@ INSTANTIATE_TEST_SUITE_P(All, Neighbours,
                                           testing::Values(Cloud::Random, Cloud::Clustered, Cloud::OnWalls),
                                           testing::ValuesIn(Engines)));
 
+// Where one slab of cells ends and the next begins, consecutive clusters lie far apart.
+TEST(NeighbourLists, TallColumnsAndSparseSprayAreFound) {
+    for (const Engine& engine : Engines) {
+        Scene scene = emptyBox(2.6f, Kernel::WendlandC2);
+        scene.simulation.spacing = 0.01f;
+        scene.domain.max = {0.06f, 6, 0.06f};
+        scene.fluid.particleMass = 0.001f;
+        Placement placement;
+        for (int i = 0; i < 3000; ++i)   // a thin column 500 spacings tall, and single drops above it
+            placement.positions.push_back({0.015f + 0.01f * float(i % 2), 0.005f + 0.01f * float(i / 6), 0.015f + 0.01f * float(i / 2 % 3)});
+        for (int i = 0; i < 40; ++i) placement.positions.push_back({0.03f, 5.1f + 0.02f * float(i), 0.05f * float(i % 2)});
+        placement.velocities.resize(placement.positions.size());
+        const auto simulation = tryMake(scene, placement, engine);
+        if (!simulation) continue;
+        const BruteForce exact(scene, placement);
+        double worst = 0;
+        for (const Particle& p : simulation->particles())
+            worst = std::max(worst, std::abs(p.density / exact.rho[size_t(p.id)] - 1));
+        EXPECT_LT(worst, engine.tolerance) << engine.name;
+        simulation->step(3);
+        EXPECT_TRUE(simulation->measure().finite);
+    }
+}
+
 // Lists that are kept for some steps give what lists made anew in each step give, up to the order of sums.
 TEST(NeighbourLists, KeptListsMissNobody) {
     Scene scene = emptyBox(2.6f, Kernel::WendlandC2);

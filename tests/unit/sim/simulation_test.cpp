@@ -1,0 +1,111 @@
+// What the front end asks of a simulation.
+#include "sim/simulation.h"
+
+#include "sim/make_simulation.h"
+
+#include <gtest/gtest.h>
+
+namespace spindrift {
+namespace {
+
+Scene calm() {
+    Scene s;
+    s.domain.max = {1, 1, 1};
+    s.simulation.spacing = 0.05f;
+    s.simulation.gravity = {0, 0, 0};
+    s.walls.kind = WallKind::Reflect;
+    s.compute.threads = 2;
+    return s;
+}
+
+// 1,000 particles far apart, the k-th with speed k/1000, and one outlier.
+Placement apart() {
+    Placement p;
+    for (int k = 0; k < 1000; ++k) {
+        p.positions.push_back({0.05f + 0.1f * float(k % 10), 0.05f + 0.1f * float(k / 10 % 10), 0.05f + 0.1f * float(k / 100)});
+        p.velocities.push_back({float(k) / 1000, 0, 0});
+    }
+    p.velocities[500] = {100, 0, 0};
+    return p;
+}
+
+TEST(Vertices, StandAtTheirIdWithTheirValue) {
+    const Placement placement = apart();
+    const auto simulation = makeSimdSimulation(calm(), placement, 2);
+    std::vector<Vertex> vertices(placement.positions.size());
+    simulation->writeVertices(vertices.data(), ColorBy::Velocity, false);
+    for (size_t i = 0; i < vertices.size(); ++i) {
+        EXPECT_EQ(vertices[i].x, placement.positions[i].x);
+        EXPECT_EQ(vertices[i].y, placement.positions[i].y);
+        EXPECT_FLOAT_EQ(vertices[i].value, placement.velocities[i].x);
+    }
+}
+
+TEST(Vertices, RangeLeavesOutliersOut) {
+    Placement placement = apart();
+    const auto simulation = makeSimdSimulation(calm(), placement, 2);
+    std::vector<Vertex> vertices(placement.positions.size());
+    const Range range = simulation->writeVertices(vertices.data(), ColorBy::Velocity, false);
+    EXPECT_LT(range.max, 2);
+    EXPECT_GE(range.max, 0.99f);
+    EXPECT_LT(range.min, 0.1f);
+    const Range plain = simulation->writeVertices(vertices.data(), ColorBy::Plain, false);
+    EXPECT_EQ(plain.min, 0);
+    EXPECT_EQ(plain.max, 0);
+}
+
+TEST(Particle, OneIsWhatAllSay) {
+    for (Precision precision : {Precision::Float, Precision::Double}) {
+        Scene scene = calm();
+        scene.simulation.gravity = {0, -9.81f, 0};
+        const auto simulation = precision == Precision::Float ? makeSimdSimulation(scene, apart(), 2)
+                                                              : makeDoubleSimulation(scene, apart(), 2);
+        simulation->step(5);
+        const std::vector<Particle> all = simulation->particles();
+        for (int id : {0, 7, 500, 999}) {
+            const Particle one = simulation->particle(id);
+            EXPECT_EQ(one.id, id);
+            EXPECT_EQ(one.position, all[size_t(id)].position);
+            EXPECT_EQ(one.velocity, all[size_t(id)].velocity);
+            EXPECT_EQ(one.density, all[size_t(id)].density);
+        }
+    }
+}
+
+TEST(Box, NobodyLeavesAndRestitutionHolds) {
+    Scene scene = calm();
+    scene.walls.restitution = 0.5f;
+    Placement p;
+    p.positions = {{0.5f, 0.5f, 0.5f}};
+    p.velocities = {{2, 0, 0}};
+    scene.time = {TimeMode::Fixed, 0.01f, 0.4f, 0.1f};
+    const auto simulation = makeSimdSimulation(scene, p, 1);
+    double fastestBack = 0;
+    for (int k = 0; k < 60; ++k) {
+        simulation->step();
+        const Particle one = simulation->particle(0);
+        EXPECT_GE(one.position.x, 0);
+        EXPECT_LE(one.position.x, 1);
+        fastestBack = std::min(fastestBack, one.velocity.x);
+    }
+    EXPECT_NEAR(fastestBack, -1, 1e-5);
+}
+
+TEST(Stir, DragsTheFluidInItsSphereOnly) {
+    Placement still = apart();
+    for (Vec3& u : still.velocities) u = {0, 0, 0};
+    Scene scene = calm();
+    scene.time = {TimeMode::Fixed, 0.001f, 0.4f, 0.1f};
+    const auto simulation = makeSimdSimulation(scene, still, 2);
+    simulation->stir({{0.05f, 0.05f, 0.05f}, 0.06f, {0, 3, 0}});
+    simulation->step(20);
+    EXPECT_GT(simulation->particle(0).velocity.y, 1);
+    EXPECT_EQ(simulation->particle(999).velocity.y, 0);
+    simulation->stir({});
+    const double before = simulation->particle(0).velocity.y;
+    simulation->step(1);
+    EXPECT_NEAR(simulation->particle(0).velocity.y, before, 1e-3);   // friction with its neighbours goes on
+}
+
+}  // namespace
+}  // namespace spindrift
