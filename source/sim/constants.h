@@ -47,21 +47,31 @@ template <class Kernel> double calibrateMasses(const Scene& s, Constants& c) {
     return particleMass(s) / (scale * bulk);
 }
 
-// The speed that fluid can reach by falling through the domain, on top of its initial speed, m/s.
-inline double expectedSpeed(const Scene& s, const Placement& placement) {
-    const Vec3d g = toDouble(s.simulation.gravity), size = toDouble(s.domain.max - s.domain.min);
-    const double lowest = std::max(0.0, g.x) * size.x + std::max(0.0, g.y) * size.y + std::max(0.0, g.z) * size.z;
-    double speed2 = 0;
-    for (size_t i = 0; i < placement.positions.size(); ++i) {
-        const double fall = lowest - dot(g, toDouble(placement.positions[i]));   // m^2/s^2
-        const Vec3d u = toDouble(placement.velocities[i]);
-        speed2 = std::max(speed2, dot(u, u) + 2 * fall);
+// Where the fluid was at the start, m from the domain's corner, and how fast, m/s.
+struct FluidExtent { Vec3d low{1e30, 1e30, 1e30}, high{-1e30, -1e30, -1e30}; double speed = 0; };
+
+inline FluidExtent extentOf(const Placement& p) {
+    FluidExtent e;
+    for (size_t i = 0; i < p.positions.size(); ++i) {
+        for (int k = 0; k < 3; ++k) {
+            e.low[k] = std::min<double>(e.low[k], p.positions[i][k]);
+            e.high[k] = std::max<double>(e.high[k], p.positions[i][k]);
+        }
+        e.speed = std::max<double>(e.speed, length(p.velocities[i]));
     }
-    return std::sqrt(speed2);
+    return e;
 }
 
-// Knobs that may change while running as well as those that don't. `speed`: see expectedSpeed.
-template <class Kernel> Constants makeConstants(const Scene& s, double speed) {
+// The speed that fluid can reach by falling through the domain, whichever way gravity points now, m/s.
+inline double expectedSpeed(const Scene& s, const FluidExtent& fluid) {
+    const Vec3d g = toDouble(s.simulation.gravity), size = toDouble(s.domain.max - s.domain.min);
+    double fall = 0;   // m^2/s^2
+    for (int k = 0; k < 3; ++k) fall += g[k] > 0 ? g[k] * (size[k] - fluid.low[k]) : -g[k] * fluid.high[k];
+    return std::sqrt(fluid.speed * fluid.speed + 2 * fall);
+}
+
+// Knobs that may change while running as well as those that don't.
+template <class Kernel> Constants makeConstants(const Scene& s, const FluidExtent& fluid) {
     const double R = supportRadius(s), h = R / 2, rho0 = s.fluid.restDensity;
     const bool linear = s.fluid.equationOfState == EquationOfState::Linear;
     Constants c{};
@@ -72,7 +82,7 @@ template <class Kernel> Constants makeConstants(const Scene& s, double speed) {
     c.gradientScale = real(mass * Kernel::gradientNorm / std::pow(R, 5));
 
     c.gamma = linear ? 1 : s.fluid.gamma;
-    double sound = s.fluid.soundSpeed > 0 ? s.fluid.soundSpeed : s.fluid.speedRatio * std::max(speed, 1e-3);
+    double sound = s.fluid.soundSpeed > 0 ? s.fluid.soundSpeed : s.fluid.speedRatio * std::max(expectedSpeed(s, fluid), 1e-3);
     if (s.fluid.stiffness > 0) sound = std::sqrt(s.fluid.stiffness * c.gamma / rho0);
     c.stiffness = real(rho0 * sound * sound / c.gamma);
     c.soundSpeed = real(sound);

@@ -26,7 +26,7 @@ public:
     SimulationOn(const Scene& scene, const Placement& placement, Device device, std::string deviceName)
         : device_(std::move(device)), deviceName_(std::move(deviceName)), scene_(scene),
           fluidCount_(int(placement.positions.size())), wallCount_(int(placement.walls.size())),
-          expectedSpeed_(expectedSpeed(scene, placement)),
+          extent_(extentOf(placement)),
           grid_(makeGrid(scene, placement.positions.size() + placement.walls.size())) {
         fluid_.upload(placement.positions, placement.velocities, 0);
         walls_.upload(placement.walls, {}, fluidCount_);
@@ -45,7 +45,7 @@ public:
         scene_ = scene;
         withKernel([&](auto kernel) {
             using K = decltype(kernel);
-            constants_ = makeConstants<K>(scene_, expectedSpeed_);
+            constants_ = makeConstants<K>(scene_, extent_);
             makePlan<K>();
         });
     }
@@ -211,7 +211,7 @@ private:
     Scene scene_;
     Stir stir_;
     int fluidCount_, wallCount_;
-    double expectedSpeed_;
+    FluidExtent extent_;
     Grid grid_;
     Constants constants_{};
     std::vector<Row> plan_;
