@@ -78,7 +78,7 @@ KnobChoice setChoice(const std::string& text) {
     return {"--set", text.substr(0, equals), text.substr(equals + 1)};
 }
 
-bool given(const char* variable) {
+[[maybe_unused]] bool given(const char* variable) {
     const char* value = std::getenv(variable);
     return value && *value;
 }
