@@ -12,7 +12,7 @@
 // libgomp reads its settings when it is loaded, before main: hence the program starts itself once more.
 static void startWithShortSpin(char** argv) {
     if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT")) return;
-    setenv("GOMP_SPINCOUNT", "2000", 0);
+    setenv("GOMP_SPINCOUNT", "20000", 0);
     execv("/proc/self/exe", argv);   // where this fails the program works as well, only less smoothly
 }
 
