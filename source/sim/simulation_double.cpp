@@ -9,8 +9,7 @@
 namespace spindrift {
 
 std::unique_ptr<Simulation> makeDoubleSimulation(const Scene& scene, const Placement& placement, int threads) {
-    const std::string name = "CPU, " + std::to_string(threads) + (threads == 1 ? " thread" : " threads") + ", double";
-    return std::make_unique<doubles::SimulationOn<Omp>>(scene, placement, Omp(threads), name);
+    return std::make_unique<doubles::SimulationOn<Omp>>(scene, placement, Omp(threads), cpuName(threads, "double"));
 }
 
 }  // namespace spindrift

@@ -52,7 +52,8 @@ std::unique_ptr<Simulation> makeSimdSimulation(const Scene& scene, const Placeme
         if (!fits || !(machine & t.target)) continue;
         hwy::SetSupportedTargetsForTest(t.target);
         hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-        return HWY_DYNAMIC_DISPATCH(makeOmp)(scene, placement, threads, "CPU, " + std::to_string(threads) + (threads == 1 ? " thread, " : " threads, ") + t.name + ", float");
+        const std::string name = cpuName(threads, std::string(t.name) + ", float");
+        return HWY_DYNAMIC_DISPATCH(makeOmp)(scene, placement, threads, name);
     }
     throw Error(Exit::NoDevice, "compute.simd: this processor does not have that instruction set; use auto");
 }
