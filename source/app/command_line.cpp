@@ -37,6 +37,7 @@ constexpr Shortcut Shortcuts[] = {
     {"--json", "output.json", "FILE", "time series as JSON, - = standard output"},
     {"--backend", "compute.backend", "NAME", "auto, cpu or cuda"},
     {"--threads", "compute.threads", "N", "CPU threads; all cores without it"},
+    {"--device", "compute.device", "N", "number of the GPU; the one that draws without it"},
 };
 
 struct RunOptions {

@@ -1,6 +1,7 @@
 #include "app/frame.h"
 
 #include "render/color_map.h"
+#include "render/cuda_interop.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,6 +25,11 @@ const char* rangeNote(RangeMode mode) {
 }
 
 }  // namespace
+
+Scene onDrawingDevice(Scene scene) {
+    if (scene.compute.device < 0 && scene.compute.backend != Backend::Cpu) scene.compute.device = drawingDevice();
+    return scene;
+}
 
 Quantity quantity(ColorBy by) {
     switch (by) {
@@ -64,12 +70,24 @@ void Frame::update(Simulation& simulation, const Scene& scene) {
     fluidCount_ = simulation.fluidCount();
     wallCount_ = walls ? simulation.wallCount() : 0;
     vertices_.resize(fluidCount_ + wallCount_);
-    seen_ = simulation.writeVertices(vertices_.map(), scene.view.colorBy, walls);
-    vertices_.unmap();
+    seen_ = write(simulation, scene.view.colorBy, walls);
     if (scene.view.colorBy != writtenBy_) fresh_ = true;
     writtenBy_ = scene.view.colorBy;
     run_ = fresh_ ? seen_ : Range{std::min(run_.min, seen_.min), std::max(run_.max, seen_.max)};
     fresh_ = false;
+}
+
+Range Frame::write(Simulation& simulation, ColorBy by, bool walls) {
+    const VertexMemory memory = vertices_.map(simulation.cudaDevice());
+    copied_ = memory.device != simulation.cudaDevice();
+    try {
+        const Range range = simulation.writeVertices(memory, by, walls);
+        vertices_.unmap();
+        return range;
+    } catch (...) {
+        vertices_.unmap();
+        throw;
+    }
 }
 
 Range Frame::range(const View& view) const {

@@ -19,6 +19,8 @@ public:
     // Lets the simulation write the vertices that this scene's view asks for, and follows their
     // range.
     void update(Simulation&, const Scene&);
+    // A GPU that steps but doesn't draw hands its vertices over by a copy through the host.
+    bool copiesVertices() const { return copied_; }
     // Forgets the range over the run: after a reset or another scene.
     void restartRange() { fresh_ = true; }
 
@@ -33,13 +35,19 @@ public:
     Range range(const View&) const;
 
 private:
+    Range write(Simulation&, ColorBy, bool walls);
+
     Renderer renderer_;
     VertexBuffer vertices_;
     int fluidCount_ = 0, wallCount_ = 0;  // in vertices_
     ColorBy writtenBy_ = ColorBy::Plain;
     Range seen_{}, run_{};  // of the last update; of all since restartRange() by this quantity
     bool fresh_ = true;     // no range yet
+    bool copied_ = false;
 };
+
+// The scene on the GPU that draws, unless it names one: then a kernel writes what GL shows. Needs a current GL context.
+Scene onDrawingDevice(Scene);
 
 // The scene's camera for a picture of this shape, relative to the domain's lower corner.
 OrbitCamera cameraOf(const Scene&, float aspect);

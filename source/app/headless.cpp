@@ -46,7 +46,7 @@ struct Pictures {
     EglContext context;
     Frame frame;
     explicit Pictures(const Scene& scene)
-        : frame(scene.window.width, scene.window.height, scene.window.samples) {}
+        : context(scene.compute.device), frame(scene.window.width, scene.window.height, scene.window.samples) {}
     void save(Simulation& simulation, const Scene& scene, const std::string& file) {
         frame.update(simulation, scene);
         frame.draw(scene);
@@ -62,15 +62,24 @@ public:
             scene_.compute.steps = DefaultSteps;
         requireOutputs(scene_.output);
         const Output& output = scene_.output;
-        if (!output.screenshot.empty() || !output.frames.empty()) pictures_.emplace(scene_);
+        if (!output.screenshot.empty() || !output.frames.empty()) {
+            pictures_.emplace(scene_);
+            scene_ = onDrawingDevice(std::move(scene_));
+        }
         sampling_ = !output.frames.empty() || !output.csv.empty() || !output.json.empty();
         simulation_ = makeSimulation(scene_);
     }
 
     int run() {
-        now_ = simulation_->measure();
-        if (sampling_) sample();
-        while (!done() && trouble_.empty()) advance();
+        try {
+            now_ = simulation_->measure();
+            if (sampling_) sample();
+            while (!done() && trouble_.empty()) advance();
+        } catch (...) {   // a GPU was lost, a disk is full: what was measured until then is kept
+            progress_.clear();
+            writeSeries();
+            throw;
+        }
         progress_.clear();
         finish();
         if (trouble_.empty()) return int(Exit::Ok);
@@ -89,11 +98,13 @@ private:
     void advance() {
         const auto start = std::chrono::steady_clock::now();
         simulation_->step();
-        stepSeconds_ +=
-            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         ++steps_;
         // The time is known from a measurement only, and the ends of run and frame depend on it.
-        if (!sampling_ && scene_.output.time == 0 && steps_ % HealthInterval != 0) return;
+        const bool look = sampling_ || scene_.output.time > 0 || steps_ % HealthInterval == 0;
+        if (look) simulation_->wait();
+        stepSeconds_ +=
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        if (!look) return;
         now_ = simulation_->measure();
         trouble_ = divergence(scene_, now_);
         if (sampling_ && trouble_.empty() && now_.time >= nextSample_) sample();
@@ -130,13 +141,18 @@ private:
         lastRow_ = steps_;
     }
 
+    void writeSeries() const {
+        const Output& output = scene_.output;
+        if (!output.csv.empty()) writeText(output.csv, series_.csv());
+        if (!output.json.empty()) writeText(output.json, series_.json());
+    }
+
     void finish() {
         const Output& output = scene_.output;
         now_ = simulation_->measure();
         if (trouble_.empty()) trouble_ = divergence(scene_, now_);
         if (sampling_ && lastRow_ < steps_) addRow();
-        if (!output.csv.empty()) writeText(output.csv, series_.csv());
-        if (!output.json.empty()) writeText(output.json, series_.json());
+        writeSeries();
         if (!output.screenshot.empty()) pictures_->save(*simulation_, scene_, output.screenshot);
         if (!quiet_) summarise();
     }
@@ -148,6 +164,8 @@ private:
         const double ms = steps_ > 0 ? 1000 * stepSeconds_ / double(steps_) : 0;
         fmt::print(out, "scene          {}\n", scene_.name);
         fmt::print(out, "device         {}\n", simulation_->deviceName());
+        if (pictures_ && pictures_->frame.copiesVertices())
+            fmt::print(out, "vertices       copied through the host, because {} draws\n", glName());
         fmt::print(out, "particles      {} fluid, {} boundary\n", simulation_->fluidCount(),
                    simulation_->wallCount());
         fmt::print(out, "steps          {}, {:.3g} ms each\n", steps_, ms);

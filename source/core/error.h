@@ -16,6 +16,7 @@ enum class Exit {
     NoDevice = 6,       // a GPU was asked for and there is none
     Memory = 7,         // the scene needs more memory than there is
     Diverged = 8,       // the physics blew up (health guard)
+    DeviceLost = 9,     // a GPU failed during the run
     Internal = 70,      // a bug of ours
 };
 

@@ -54,6 +54,7 @@ inline size_t vectorSize(int slots) { return size_t(slots) * vectorStride; }
 
 template <class I> HD inline Real<I> load(ScalarField f, I i) { return loadAt(f.data, i); }
 template <class I> HD inline void store(ScalarField f, I i, Real<I> value) { storeAt(f.data, i, value); }
+#ifdef SPINDRIFT_SIMD
 template <class I> HD inline Vector<Real<I>> load(VectorField f, I i) {
     const real* p = f.data + vectorOffset(firstOf(i), 0);
     return {loadAt(p, origin(i)), loadAt(p + clusterSize, origin(i)), loadAt(p + 2 * clusterSize, origin(i))};
@@ -64,6 +65,17 @@ template <class I> HD inline void store(VectorField f, I i, Vector<Real<I>> valu
     storeAt(p + clusterSize, origin(i), value.y);
     storeAt(p + 2 * clusterSize, origin(i), value.z);
 }
+#else
+// One aligned access instead of three.
+struct alignas(4 * sizeof(real)) Packed { real x, y, z, unused; };
+HD inline Vector<real> load(VectorField f, int i) {
+    const Packed p = reinterpret_cast<const Packed*>(f.data)[i];
+    return {p.x, p.y, p.z};
+}
+HD inline void store(VectorField f, int i, Vector<real> value) {
+    reinterpret_cast<Packed*>(f.data)[i] = {value.x, value.y, value.z, 0};
+}
+#endif
 
 }  // namespace spindrift::LANES
 

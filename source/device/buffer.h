@@ -8,23 +8,25 @@ namespace spindrift {
 template <class T, class Device> class Buffer {
 public:
     explicit Buffer(Device& device) : device_(&device) {}
-    ~Buffer() { device_->release(data_); }
+    ~Buffer() { release(); }
     Buffer(const Buffer&) = delete;
     Buffer& operator=(const Buffer&) = delete;
 
     void resize(size_t n) {
         if (n > capacity_) {
-            device_->release(data_);
-            data_ = nullptr;
-            capacity_ = 0;
+            release();
             data_ = device_->template allocate<T>(n);
             capacity_ = n;
         }
         size_ = n;
     }
+    void release() {
+        device_->release(data_, capacity_ * sizeof(T));
+        data_ = nullptr;
+        size_ = capacity_ = 0;
+    }
     T* data() const { return data_; }
     size_t size() const { return size_; }
-    size_t bytes() const { return capacity_ * sizeof(T); }
     void swap(Buffer& o) {
         std::swap(data_, o.data_);
         std::swap(size_, o.size_);

@@ -1,11 +1,14 @@
 #pragma once
 // The host: its memory, its cores. Results never depend on the number of threads: loops write their own
 // elements only, the sort is stable, reductions run over fixed blocks in a fixed order.
+#include "core/pass_time.h"
+#include "core/vertex.h"
 #include "device/buffer.h"
 
 #include <sys/mman.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <new>
@@ -17,6 +20,8 @@ class Omp {
 public:
     explicit Omp(int threads) : threads_(threads) {}
     int threads() const { return threads_; }
+    static constexpr int index() { return hostMemory; }
+    int64_t bytes() const { return bytes_; }   // held by buffers
 
     // Zeroed memory, aligned for any vector and readable one vector past its end; huge pages when it is large.
     template <class T> T* allocate(size_t n) {
@@ -28,9 +33,13 @@ public:
         if (!p) throw std::bad_alloc();
         if (alignment == page) madvise(p, bytes, MADV_HUGEPAGE);
         std::memset(p, 0, bytes);
+        bytes_ += int64_t(n * sizeof(T));
         return static_cast<T*>(p);
     }
-    void release(void* p) { std::free(p); }
+    void release(void* p, size_t bytes) {
+        std::free(p);
+        bytes_ -= int64_t(bytes);
+    }
     template <class T> void upload(T* to, const T* from, size_t n) { std::copy(from, from + n, to); }
     template <class T> void download(T* to, const T* from, size_t n) { std::copy(from, from + n, to); }
 
@@ -47,7 +56,7 @@ public:
         forRanges(n, 256, [&](int begin, int end) { runRange(pass, begin, end); });
     }
 
-    // *out = the sum (Value::add) of reduction.of(i) for i in [0, n), block by block.
+    // *out = the sum (Value::add) of what reduction.addTo adds for i in [0, n), block by block.
     template <class Value, class Reduction> void reduce(int n, const Reduction& reduction, Value* out) {
         const int block = 1024;
         const int blocks = (n + block - 1) / block;
@@ -61,14 +70,58 @@ public:
         for (const Value& p : partial) sum.add(p);
         *out = sum;
     }
+    // The same, for the host to read.
+    template <class Value, class Reduction> Value sum(int n, const Reduction& reduction) {
+        Value value;
+        reduce(n, reduction, &value);
+        return value;
+    }
+
+    // How many i in [0, n) fall into each bin: pass.bin(i) in [0, Pass::bins), or -1 for none.
+    template <class Pass> std::vector<int> histogram(int n, const Pass& pass) {
+        const int block = 16384;
+        std::vector<std::vector<int>> partial((n + block - 1) / block, std::vector<int>(Pass::bins));
+        forRanges(n, block, [&](int begin, int end) {
+            for (int i = begin; i < end; ++i)
+                if (const int bin = pass.bin(i); bin >= 0) ++partial[begin / block][bin];
+        });
+        std::vector<int> counts(Pass::bins);
+        for (const std::vector<int>& p : partial)
+            for (int b = 0; b < Pass::bins; ++b) counts[b] += p[b];
+        return counts;
+    }
 
     // Stable counting sort of n items by key (a cell, or -1 to drop the item). Cells come in rows of
     // `rowLength`; each row starts at a multiple of `pad` and is filled up with -1.
     // Writes cellStart[rows * rowLength + 1] and order (slot -> item or -1); returns the number of slots.
     int sortByCell(int n, const int* key, int rows, int rowLength, int pad, int* cellStart, Buffer<int, Omp>& order);
 
+    // Steps are run pass by pass, and each pass is measured.
+    static constexpr bool recordsSteps = false;
+    struct Recording {};
+    template <class F> void timed(PassTime* time, const F& f) {
+        time->ms += milliseconds(f);
+        ++time->runs;
+    }
+    void collectTimes() {}
+    // The ms that each of `count` calls took.
+    template <class F> std::vector<double> timeEach(int count, const F& f) {
+        std::vector<double> ms(count);
+        for (double& m : ms) m = milliseconds(f);
+        return ms;
+    }
+    // Until the work asked for is done: it always is.
+    void wait() {}
+
 private:
+    template <class F> static double milliseconds(const F& f) {
+        const auto start = std::chrono::steady_clock::now();
+        f();
+        return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    }
+
     int threads_;
+    int64_t bytes_ = 0;
     std::vector<std::vector<int>> counts_;  // per thread and cell: first the count, then the next free slot
     std::vector<int> rowSlots_;             // slots in a row, then their running sum
 };

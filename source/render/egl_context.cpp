@@ -6,6 +6,7 @@
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 
+#include <algorithm>
 #include <array>
 
 namespace spindrift {
@@ -30,14 +31,25 @@ EGLContext contextOn(EGLDisplay display) {
     return EGL_NO_CONTEXT;
 }
 
-// Every display worth trying, GPUs first: the device platform lists them in front of software.
-std::array<EGLDisplay, 9> displays() {
+bool isCudaDevice(EGLDeviceEXT device, int number) {
+    const auto query =
+        reinterpret_cast<PFNEGLQUERYDEVICEATTRIBEXTPROC>(eglGetProcAddress("eglQueryDeviceAttribEXT"));
+    EGLAttrib found = hostMemory;
+    return query && query(device, EGL_CUDA_DEVICE_NV, &found) && int(found) == number;
+}
+
+// Every display worth trying, the GPU asked for first, then other GPUs: the device platform lists them in front of
+// software.
+std::array<EGLDisplay, 9> displays(int cudaDevice) {
     std::array<EGLDisplay, 9> found{};
     std::array<EGLDeviceEXT, 8> devices{};
     EGLint count = 0;
     const auto queryDevices =
         reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(eglGetProcAddress("eglQueryDevicesEXT"));
     if (queryDevices) queryDevices(EGLint(devices.size()), devices.data(), &count);
+    if (cudaDevice != hostMemory)
+        std::stable_partition(devices.begin(), devices.begin() + count,
+                              [&](EGLDeviceEXT device) { return isCudaDevice(device, cudaDevice); });
     for (EGLint i = 0; i < count; ++i)
         found[i] = eglGetPlatformDisplay(EGL_PLATFORM_DEVICE_EXT, devices[i], nullptr);
     found[count] =
@@ -47,8 +59,8 @@ std::array<EGLDisplay, 9> displays() {
 
 }  // namespace
 
-EglContext::EglContext() {
-    for (EGLDisplay display : displays()) {
+EglContext::EglContext(int cudaDevice) {
+    for (EGLDisplay display : displays(cudaDevice)) {
         context_ = contextOn(display);
         if (!context_) continue;
         display_ = display;

@@ -1,12 +1,13 @@
 #pragma once
 // An OpenGL context without a window: surfaceless on Mesa, a GPU's device platform otherwise.
+#include "core/vertex.h"
 
 namespace spindrift {
 
 class EglContext {
 public:
-    // Makes a 4.5 core context current on this thread; throws Error (NoDisplay).
-    EglContext();
+    // Makes a 4.5 core context current on this thread, on that CUDA device if it can draw; throws Error (NoDisplay).
+    explicit EglContext(int cudaDevice = hostMemory);
     ~EglContext();
     EglContext(const EglContext&) = delete;
     EglContext& operator=(const EglContext&) = delete;

@@ -1,5 +1,6 @@
 #include "render/renderer.h"
 
+#include "core/error.h"
 #include "render/color_map.h"
 #include "render/shader.h"
 
@@ -105,6 +106,7 @@ void Renderer::setSamples(int samples) {
 }
 
 void Renderer::draw(const VertexBuffer& vertices, const DrawSettings& settings) {
+    CHECK(!vertices.mapped());
     camera_ = settings.camera;
     uploadFrame(settings);
     glBindFramebuffer(GL_FRAMEBUFFER, target_.drawing());

@@ -5,26 +5,37 @@
 namespace spindrift {
 
 void VertexBuffer::resize(int count) {
-    CHECK(count >= 0);
+    CHECK(count >= 0 && !mapped());
     count_ = count;
     if (count <= capacity_) return;
     capacity_ = count;
+    loan_.end();
     glNamedBufferData(buffer_, GLsizeiptr(sizeof(Vertex)) * count, nullptr, GL_STREAM_DRAW);
     if (glGetError() == GL_OUT_OF_MEMORY)
         throw Error(Exit::Memory, "no graphics memory for " + std::to_string(count) +
                                       " particles: raise simulation.spacing");
 }
 
-Vertex* VertexBuffer::map() {
-    if (count_ == 0) return nullptr;
+VertexMemory VertexBuffer::map(int device) {
+    CHECK(!mapped());
+    if (count_ == 0) return {nullptr, device};
+    if (device != hostMemory && device == drawingDevice_) {
+        if (!loan_.begun()) loan_.begin(buffer_, device);
+        const VertexMemory memory{loan_.map(), device};
+        mapped_ = Mapped::Device;
+        return memory;
+    }
     void* memory = glMapNamedBufferRange(buffer_, 0, GLsizeiptr(sizeof(Vertex)) * count_,
                                          GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT);
     CHECK(memory);
-    return static_cast<Vertex*>(memory);
+    mapped_ = Mapped::Host;
+    return {static_cast<Vertex*>(memory), hostMemory};
 }
 
 void VertexBuffer::unmap() {
-    if (count_ > 0) glUnmapNamedBuffer(buffer_);
+    if (mapped_ == Mapped::Host) glUnmapNamedBuffer(buffer_);
+    if (mapped_ == Mapped::Device) loan_.unmap();
+    mapped_ = Mapped::Not;
 }
 
 }  // namespace spindrift

@@ -1,28 +1,35 @@
 #pragma once
 // The one GL buffer that the simulation writes and the renderer draws.
 #include "core/vertex.h"
+#include "render/cuda_interop.h"
 #include "render/gl.h"
 
 namespace spindrift {
 
 class VertexBuffer {
 public:
-    VertexBuffer() : buffer_(makeBuffer()) {}
+    // Needs a current context.
+    VertexBuffer() : buffer_(makeBuffer()), drawingDevice_(drawingDevice()) {}
 
     // Keeps the memory when it's large enough; the contents are lost when it grows.
     void resize(int count);
     int count() const { return count_; }
 
-    // Host memory for count() vertices; the old contents are undefined. Nothing may be drawn until
-    // unmap().
-    Vertex* map();
+    // Memory for count() vertices, of that CUDA device if it is the one that draws, of the host otherwise; the old
+    // contents are undefined. Nothing may be drawn until unmap().
+    VertexMemory map(int device = hostMemory);
     void unmap();
+    bool mapped() const { return mapped_ != Mapped::Not; }
 
     GLuint name() const { return buffer_; }
 
 private:
+    enum class Mapped { Not, Host, Device };
     GlBuffer buffer_;
     int count_ = 0, capacity_ = 0;
+    int drawingDevice_;
+    Mapped mapped_ = Mapped::Not;
+    CudaLoan loan_;   // ends before the buffer does
 };
 
 }  // namespace spindrift

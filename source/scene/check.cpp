@@ -20,6 +20,9 @@ namespace {
 constexpr double BytesPerParticle = 400;
 // Start and fill counters of one grid cell.
 constexpr double BytesPerCell = 16;
+// On a GPU: state, sorted copies, sort and vertices; boundary particles have no velocity. Cells: two starts and a count.
+constexpr double GpuBytesPerParticle = 136, GpuBytesPerWall = 76, GpuBytesPerCell = 13;
+constexpr double GpuBytesAnyway = 64 << 20;
 // Particle ids are 32-bit; walls and fluid together stay clear of the limit.
 constexpr int64_t MostParticles = 1'000'000'000;
 constexpr double SmallestSupport = 1.5;
@@ -143,18 +146,27 @@ void checkCounts(const Scene& scene) {
                            scene.compute.threads, count.fluid));
 }
 
+// Cells are half a spacing long and two wide; in a box that is mostly empty they are made larger.
+double mostCells(const Scene& scene, double particles) {
+    const Vec3d size = toDouble(scene.domain.max) - toDouble(scene.domain.min);
+    const double dx = scene.simulation.spacing;
+    return std::min(size.x * size.y * size.z / (2 * dx * dx * dx), std::max(4e6, 16 * particles));
+}
+
 }  // namespace
 
 int64_t estimateMemory(const Scene& scene) {
     const ParticleCount count = countParticles(scene);
-    const Vec3d size = toDouble(scene.domain.max) - toDouble(scene.domain.min);
-    // Cells are half a spacing long and two wide; in a box that is mostly empty they are made
-    // larger.
-    const double dx = scene.simulation.spacing,
-                 particles = double(count.fluid) + double(count.walls);
-    const double cells =
-        std::min(size.x * size.y * size.z / (2 * dx * dx * dx), std::max(4e6, 16 * particles));
-    const double bytes = BytesPerParticle * particles + BytesPerCell * cells;
+    const double particles = double(count.fluid) + double(count.walls);
+    const double bytes = BytesPerParticle * particles + BytesPerCell * mostCells(scene, particles);
+    return int64_t(std::min(bytes, 9e18));
+}
+
+int64_t estimateGpuMemory(const Scene& scene) {
+    const ParticleCount count = countParticles(scene);
+    const double fluid = double(count.fluid), walls = double(count.walls);
+    const double bytes = GpuBytesPerParticle * fluid + GpuBytesPerWall * walls +
+                         GpuBytesPerCell * mostCells(scene, fluid + walls) + GpuBytesAnyway;
     return int64_t(std::min(bytes, 9e18));
 }
 

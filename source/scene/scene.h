@@ -46,6 +46,7 @@ struct Compute {
     Precision precision = Precision::Float;
     Simd simd = Simd::Auto;
     int threads = 0;                            // 0 = all cores
+    int device = -1;                            // number of the GPU; -1 = the one that draws, else the first
     float skin = 0.1f;                          // neighbour lists reach this share of R further and are kept so long
     int steps = 0;                              // 0 = until closed (window) or until output.time
 };

@@ -76,6 +76,8 @@ void visitProgram(S& s, Visitor&& visit) {
     visit("compute.simd", s.compute.simd, Knob{"", 0, 0, "widest CPU instructions used", Restart});
     visit("compute.threads", s.compute.threads,
           Knob{"", 0, 4096, "CPU threads, 0 = all cores", Restart});
+    visit("compute.device", s.compute.device,
+          Knob{"", -1, 63, "number of the GPU, -1 = the one that draws, else the first", Restart});
     visit("compute.skin", s.compute.skin,
           Knob{"", 0, 1,
                "neighbour lists reach this share of the support radius further and last until "

@@ -51,6 +51,12 @@ struct ClusterBoxes {
 class ClusterLists {
 public:
     ClusterList* data() { return lists_.data(); }
+    int64_t bytes() const {
+        size_t numbers = 0;
+        for (const auto* arenas : {&entries_, &pruned_})
+            for (const std::vector<uint32_t>& arena : *arenas) numbers += arena.capacity();
+        return int64_t(lists_.capacity() * sizeof(ClusterList) + numbers * sizeof(uint32_t));
+    }
 
     void build(Omp& device, const Grid& grid, float reach, const ClusterBoxes& own, const Particles& ownParticles,
                const ClusterBoxes& other, const int* otherCellStart) {

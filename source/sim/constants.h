@@ -6,8 +6,8 @@
 #define SPINDRIFT_SIM_CONSTANTS_H
 #endif
 
-#include "scene/particles.h"
 #include "sim/kernels.h"
+#include "sim/run_state.h"
 #include "sim/view.h"
 
 #include <algorithm>
@@ -45,21 +45,6 @@ template <class Kernel> double calibrateMasses(const Scene& s, Constants& c) {
     c.wallMassFloor = 1;
     c.wallFactor = real(wall / bulk);
     return particleMass(s) / (scale * bulk);
-}
-
-// Where the fluid was at the start, m from the domain's corner, and how fast, m/s.
-struct FluidExtent { Vec3d low{1e30, 1e30, 1e30}, high{-1e30, -1e30, -1e30}; double speed = 0; };
-
-inline FluidExtent extentOf(const Placement& p) {
-    FluidExtent e;
-    for (size_t i = 0; i < p.positions.size(); ++i) {
-        for (int k = 0; k < 3; ++k) {
-            e.low[k] = std::min<double>(e.low[k], p.positions[i][k]);
-            e.high[k] = std::max<double>(e.high[k], p.positions[i][k]);
-        }
-        e.speed = std::max<double>(e.speed, length(p.velocities[i]));
-    }
-    return e;
 }
 
 // The speed that fluid can reach by falling through the domain, whichever way gravity points now, m/s.
@@ -112,7 +97,7 @@ inline Grid makeGrid(const Scene& s, size_t particles) {
     double length = 0.5 * dx, row = 2 * dx;
     auto cellsAlong = [](double extent, double cell) { return std::max(1.0, std::ceil(extent / cell)); };
     auto total = [&] { return cellsAlong(size.x, length) * cellsAlong(size.y, row) * cellsAlong(size.z, row); };
-    const double most = std::max<double>(4e6, 16.0 * double(particles));
+    const double most = std::clamp<double>(16.0 * double(particles), 4e6, 2e9);   // cells are counted in 32 bits
     while (total() > most) {
         length *= 2;
         if (length > row) row = length;

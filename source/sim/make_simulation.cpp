@@ -1,6 +1,8 @@
 #include "sim/make_simulation.h"
 
 #include "core/error.h"
+#include "device/cuda_devices.h"
+#include "scene/check.h"
 
 #include <algorithm>
 #include <new>
@@ -13,16 +15,47 @@ static int threadCount(const Scene& scene) {
     return scene.compute.threads > 0 ? scene.compute.threads : cores;
 }
 
-std::unique_ptr<Simulation> makeSimulation(const Scene& scene) {
-    if (scene.compute.backend == Backend::Cuda)
-        throw Error(Exit::NoDevice, "compute.backend: cuda was asked for, but this build runs on the CPU only; use auto or cpu");
+static int deviceOf(const Scene& scene) { return std::max(scene.compute.device, 0); }
+
+std::string whyNoGpu(const Scene& scene) {
+    if (scene.compute.precision == Precision::Double) return "double precision is computed on the CPU only; use float";
+    return cudaProblem(deviceOf(scene));
+}
+
+// Asked for CUDA it is CUDA or an error; `auto` takes the GPU when there is one that can do what the scene asks for.
+static bool runsOnGpu(const Scene& scene) {
+    if (scene.compute.backend == Backend::Cpu) return false;
+    const std::string problem = whyNoGpu(scene);
+    if (scene.compute.backend == Backend::Cuda && !problem.empty())
+        throw Error(Exit::NoDevice, "--backend cuda: " + problem + "; or use --backend cpu");
+    return problem.empty();
+}
+
+// Before anything is taken: a GPU's memory is not swapped, and a half-built run would be of no use.
+static void requireGpuMemory(const Scene& scene, int device) {
+    const double GiB = 1 << 30, needed = double(estimateGpuMemory(scene)), free = double(cudaFreeMemory(device));
+    if (needed <= free) return;
+    auto inGiB = [&](double bytes) { return std::to_string(bytes / GiB).substr(0, 5) + " GiB"; };
+    throw Error(Exit::Memory, "simulation.spacing: the particles need about " + inGiB(needed) + " of GPU memory, " +
+                                  inGiB(free) + " are free; raise it, or use --backend cpu");
+}
+
+static std::unique_ptr<Simulation> build(const Scene& scene, const RunState* state) {
+    const int device = deviceOf(scene);
+    const bool gpu = runsOnGpu(scene);
+    if (gpu) requireGpuMemory(scene, device);
     try {
-        const Placement placement = placeParticles(scene);
-        return scene.compute.precision == Precision::Double ? makeDoubleSimulation(scene, placement, threadCount(scene))
-                                                            : makeSimdSimulation(scene, placement, threadCount(scene));
+        const RunState start = state ? RunState() : RunState(placeParticles(scene));
+        const RunState& from = state ? *state : start;
+        if (gpu) return makeCudaSimulation(scene, from, device);
+        return scene.compute.precision == Precision::Double ? makeDoubleSimulation(scene, from, threadCount(scene))
+                                                            : makeSimdSimulation(scene, from, threadCount(scene));
     } catch (const std::bad_alloc&) {
         throw Error(Exit::Memory, "out of memory while building the particles; use a larger simulation.spacing");
     }
 }
+
+std::unique_ptr<Simulation> makeSimulation(const Scene& scene) { return build(scene, nullptr); }
+std::unique_ptr<Simulation> makeSimulation(const Scene& scene, const RunState& state) { return build(scene, &state); }
 
 }  // namespace spindrift

@@ -1,6 +1,5 @@
 #pragma once
 // How each instance of the simulation is built; makeSimulation chooses among them.
-#include "scene/particles.h"
 #include "sim/simulation.h"
 
 #include <string>
@@ -12,7 +11,10 @@ inline std::string cpuName(int threads, const std::string& lanes) {
     return "CPU, " + std::to_string(threads) + (threads == 1 ? " thread, " : " threads, ") + lanes;
 }
 
-std::unique_ptr<Simulation> makeSimdSimulation(const Scene&, const Placement&, int threads);
-std::unique_ptr<Simulation> makeDoubleSimulation(const Scene&, const Placement&, int threads);
+// They start from a state, or from the placement of a run that begins.
+std::unique_ptr<Simulation> makeSimdSimulation(const Scene&, const RunState&, int threads);
+std::unique_ptr<Simulation> makeDoubleSimulation(const Scene&, const RunState&, int threads);
+// Throws Error (NoDevice, Memory).
+std::unique_ptr<Simulation> makeCudaSimulation(const Scene&, const RunState&, int device);
 
 }  // namespace spindrift

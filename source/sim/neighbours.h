@@ -51,21 +51,33 @@ HD inline void forNeighbours(const View& v, const Neighbourhood& near, Group i, 
     if constexpr (prunes && lists == Lists::Prune) list.prunedCount = kept;
 }
 #else
+// Distance from a coordinate, itself in row `own`, to a row; a bit less, as a particle on a face may have been rounded
+// into the next row.
+HD inline real rowGap(real x, int own, int row, real low, real rowSize) {
+    const real gap = row < own ? x - (low + real(row + 1) * rowSize) : row > own ? low + real(row) * rowSize - x : real(0);
+    return max(gap - real(1e-3) * rowSize, real(0));
+}
+
+// Rows of cells within reach; of each row the stretch that the support sphere cuts out.
 template <Lists, class F>
 HD inline void forNeighbours(const View& v, const Neighbourhood& near, int, Vector<real> xi, const F& f) {
     const Grid& g = v.grid;
-    const real R = v.c.support;
-    const int x0 = g.cellX(xi.x - R), x1 = g.cellX(xi.x + R);
-    const int y0 = g.rowY(xi.y - R), y1 = g.rowY(xi.y + R);
-    const int z0 = g.rowZ(xi.z - R), z1 = g.rowZ(xi.z + R);
-    for (int z = z0; z <= z1; ++z)
+    const real R = v.c.support, rowSize = 1 / g.perMetreRow;
+    const int ownY = g.rowY(xi.y), y0 = g.rowY(xi.y - R), y1 = g.rowY(xi.y + R);
+    const int ownZ = g.rowZ(xi.z), z0 = g.rowZ(xi.z - R), z1 = g.rowZ(xi.z + R);
+    for (int z = z0; z <= z1; ++z) {
+        const real gapZ = rowGap(xi.z, ownZ, z, g.low.z, rowSize);
         for (int y = y0; y <= y1; ++y) {
+            const real gapY = rowGap(xi.y, ownY, y, g.low.y, rowSize);
+            const real left = squareRoot(max(v.c.support2 - gapY * gapY - gapZ * gapZ, real(0)));
             const int row = (z * g.cells.y + y) * g.cells.x;
-            for (int j = near.cellStart[row + x0], end = near.cellStart[row + x1 + 1]; j < end; ++j) {
+            const int end = near.cellStart[row + g.cellX(xi.x + left) + 1];
+            for (int j = near.cellStart[row + g.cellX(xi.x - left)]; j < end; ++j) {
                 const Pair<real> pair = makePair(v.c, xi, load(near.position, j));
                 if (pair.distance2 < v.c.support2) f(pair, j);
             }
         }
+    }
 }
 #endif
 

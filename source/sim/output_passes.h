@@ -46,20 +46,14 @@ template <class Value> struct WriteVertices {
 };
 
 // How the values are spread over a range.
-struct Histogram {
-    static constexpr int bins = 512;
-    int count[bins] = {};
-    HD_OUT void add(const Histogram& o) {
-        for (int b = 0; b < bins; ++b) count[b] += o.count[b];
-    }
-};
 template <class Value> struct CountValues {
+    static constexpr int bins = 512;
     Particles p;
     ValueRange range;
-    HD void addTo(Histogram& h, int i) const {
-        if (p.id[i] < 0) return;
+    HD_OUT int bin(int i) const {
+        if (p.id[i] < 0) return -1;
         const float share = (float(Value::of(p, i)) - range.low) / (range.high - range.low);
-        if (share >= 0 && share <= 1) ++h.count[int(share * (Histogram::bins - 1))];
+        return share >= 0 && share <= 1 ? int(share * (bins - 1)) : -1;
     }
 };
 

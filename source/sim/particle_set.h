@@ -29,7 +29,7 @@ public:
                 {density_.data()}, {inverseDensity_.data()}, {pressureTerm_.data()}, {mass_.data()}};
     }
 
-    // Takes over particles with ids firstId, firstId + 1, ...; no velocities means at rest.
+    // Takes over particles with ids firstId, firstId + 1, ...; boundary particles have no velocities.
     void upload(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities, int firstId) {
         const int n = int(positions.size());
         resize((n + clusterSize - 1) / clusterSize * clusterSize);
@@ -39,11 +39,11 @@ public:
             id[i] = firstId + i;
             for (int k = 0; k < 3; ++k) {
                 x[vectorOffset(i, k)] = positions[i][k];
-                u[vectorOffset(i, k)] = velocities.empty() ? 0 : velocities[i][k];
+                if (kind_ == Kind::Fluid) u[vectorOffset(i, k)] = velocities[i][k];
             }
         }
         device_.upload(position_.data(), x.data(), x.size());
-        device_.upload(velocity_.data(), u.data(), u.size());
+        if (kind_ == Kind::Fluid) device_.upload(velocity_.data(), u.data(), u.size());
         device_.upload(id_.data(), id.data(), id.size());
     }
 
@@ -57,17 +57,34 @@ public:
                                              cellStart_.data(), order_);
         sortedId_.resize(slots);
         sortedPosition_.resize(vectorSize(slots));
-        sortedVelocity_.resize(vectorSize(slots));
+        if (kind_ == Kind::Fluid) sortedVelocity_.resize(vectorSize(slots));
         Particles sorted = view();
         sorted.id = sortedId_.data();
         sorted.position = {sortedPosition_.data()};
         sorted.velocity = {sortedVelocity_.data()};
         device_.forEach(slots, Reorder{order_.data(), view(), sorted});
+        flip();
+        resize(slots);
+    }
+    // The sorted copies become the particles: what a recorded sort can't do when it is run again, because it is the
+    // host's work. `side` says which buffers are the particles now.
+    void flip() {
         id_.swap(sortedId_);
         position_.swap(sortedPosition_);
         velocity_.swap(sortedVelocity_);
-        resize(slots);
+        side_ = 1 - side_;
     }
+    int side() const { return side_; }
+    // Particles that never move are sorted once.
+    void keepOrder() {
+        sortedId_.release(), key_.release(), order_.release();
+        sortedPosition_.release(), sortedVelocity_.release();
+    }
+
+    // Relative to the domain's lower corner, in the order of ids from firstId on: bit by bit what upload() took, or what
+    // became of it.
+    std::vector<Vec3> positions(int count, int firstId) const { return inOrder(position_, count, firstId); }
+    std::vector<Vec3> velocities(int count, int firstId) const { return inOrder(velocity_, count, firstId); }
 
     // In the order of ids, in world coordinates.
     std::vector<Particle> download(int count, Vec3 origin) const {
@@ -101,16 +118,27 @@ private:
     void resize(int slots) {
         slots_ = slots;
         id_.resize(slots);
-        for (auto* field : {&position_, &velocity_}) field->resize(vectorSize(slots));
+        position_.resize(vectorSize(slots));
         pressureTerm_.resize(slots);
         if (kind_ == Kind::Walls) return mass_.resize(slots);
-        acceleration_.resize(vectorSize(slots));
+        for (auto* field : {&velocity_, &acceleration_}) field->resize(vectorSize(slots));
         for (auto* field : {&density_, &inverseDensity_}) field->resize(slots);
     }
     static Particle describe(const Particles& host, int i, Vec3 origin) {
         auto toVec3d = [](Vector<real> v) { return Vec3d{double(v.x), double(v.y), double(v.z)}; };
         return {host.id[i], toVec3d(load(host.position, i)) + toDouble(origin), toVec3d(load(host.velocity, i)),
                 toVec3d(load(host.acceleration, i)), double(load(host.density, i)), double(pressureOf(host, i))};
+    }
+    std::vector<Vec3> inOrder(const Buffer<real, Device>& field, int count, int firstId) const {
+        std::vector<real> values = copy(field);
+        const std::vector<int> id = copy(id_);
+        std::vector<Vec3> out(count);
+        for (int i = 0; i < slots_; ++i) {
+            if (id[i] < 0) continue;
+            const Vector<real> v = load(VectorField{values.data()}, i);
+            out[id[i] - firstId] = {float(v.x), float(v.y), float(v.z)};
+        }
+        return out;
     }
     template <class T> std::vector<T> copy(const Buffer<T, Device>& buffer) const { return copy(buffer, 0, buffer.size()); }
     template <class T> std::vector<T> copy(const Buffer<T, Device>& buffer, size_t first, size_t count) const {
@@ -121,7 +149,7 @@ private:
 
     Device& device_;
     Kind kind_;
-    int slots_ = 0;
+    int slots_ = 0, side_ = 0;
     Buffer<int, Device> id_{device_}, sortedId_{device_}, key_{device_}, order_{device_}, cellStart_{device_};
     Buffer<real, Device> position_{device_}, velocity_{device_}, acceleration_{device_};
     Buffer<real, Device> sortedPosition_{device_}, sortedVelocity_{device_};

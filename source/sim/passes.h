@@ -16,16 +16,21 @@ namespace spindrift::LANES {
 // Empty slots lie beyond this coordinate, m.
 inline constexpr real farAway = 1e6;
 
-// Sort key: the particle's cell, or -1 for an empty slot.
+// Sort key: the particle's cell, or -1 for an empty slot. Who is nowhere (not finite) has no neighbours in any cell; such
+// particles are spread, because all of them in one cell would take forever.
 struct FindCell {
     using Index = int;
     Particles p;
     Grid grid;
     int* key;
-    HD void operator()(int i) const { key[i] = p.id[i] < 0 ? -1 : grid.cell(load(p.position, i)); }
+    HD void operator()(int i) const {
+        const Vector<real> x = load(p.position, i);
+        const bool somewhere = dot(x, x) - dot(x, x) == 0;
+        key[i] = p.id[i] < 0 ? -1 : somewhere ? grid.cell(x) : i % (grid.cells.x * grid.cells.y * grid.cells.z);
+    }
 };
 
-// Moves what a particle carries from step to step to its new slot.
+// Moves what a particle carries from step to step to its new slot. Boundary particles have no velocity.
 struct Reorder {
     using Index = int;
     const int* order;
@@ -36,7 +41,7 @@ struct Reorder {
         // Empty slots: so far out that no distance to anybody is small or equal.
         const real far = 2 * farAway * real(1 + i % 4);
         store(to.position, i, s < 0 ? Vector<real>{far, far, far} : load(from.position, s));
-        store(to.velocity, i, s < 0 ? Vector<real>{0, 0, 0} : load(from.velocity, s));
+        if (to.velocity.data) store(to.velocity, i, s < 0 ? Vector<real>{0, 0, 0} : load(from.velocity, s));
     }
 };
 

@@ -20,6 +20,7 @@ struct Boxes { template <class... A> void compute(A&&...) {} };
 struct NeighbourLists {
     template <class... A> void build(A&&...) {}
     ClusterList* data() { return nullptr; }
+    int64_t bytes() const { return 0; }
 };
 }  // namespace spindrift::LANES
 #endif

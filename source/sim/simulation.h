@@ -1,8 +1,10 @@
 #pragma once
 // All that the front end sees of the physics: a handful of functions, no templates, no CUDA.
+#include "core/pass_time.h"
 #include "core/vec.h"
 #include "core/vertex.h"
 #include "scene/scene.h"
+#include "sim/run_state.h"
 
 #include <cstdint>
 #include <memory>
@@ -11,8 +13,8 @@
 
 namespace spindrift {
 
-// One row of the plan: a pass's name and the wall time it took since the last resetTimes().
-struct PassTime { const char* name; double ms; int64_t runs; };
+// One row of the plan, in the order of the step: a pass that runs, or one that this scene doesn't need and why not.
+struct PlanRow { std::string name, skipped; };
 
 // Where the values of the vertices lie, a few outliers on either side left out (0.5 % each): what a colour scale needs.
 struct Range { float min, max; };
@@ -53,21 +55,40 @@ public:
     virtual int fluidCount() const = 0;
     virtual int wallCount() const = 0;
     // Fills out[id] for every fluid particle, and for the boundary particles when withWalls. `out` must hold
-    // fluidCount (+ wallCount) vertices. Returns the range of the fluid's values. Boundary value: 0.
-    virtual Range writeVertices(Vertex* out, ColorBy, bool withWalls) = 0;
+    // fluidCount (+ wallCount) vertices; memory of cudaDevice() is written by a kernel, host memory of a GPU run by one
+    // copy. Returns the range of the fluid's values. Boundary value: 0.
+    virtual Range writeVertices(VertexMemory out, ColorBy, bool withWalls) = 0;
 
     virtual Measurement measure() = 0;
     // All fluid particles, in the order of their ids; one of them by its id in [0, fluidCount).
     virtual std::vector<Particle> particles() = 0;
     virtual Particle particle(int id) = 0;
 
-    virtual std::vector<PassTime> times() const = 0;
+    // Where the run stands: makeSimulation(scene, state) goes on from there, on any device.
+    virtual RunState state() = 0;
+
+    // Time of each pass since the last resetTimes(). A CPU measures every step, a GPU the first step after resetTimes().
+    virtual std::vector<PassTime> times() = 0;
     virtual void resetTimes() = 0;
+    // Advances by `count` steps and returns the ms that each took: by the clock, on a GPU by events on its stream.
+    virtual std::vector<double> timeSteps(int count) = 0;
+    // A GPU steps while the program goes on: returns when it is done.
+    virtual void wait() = 0;
+
+    virtual std::vector<PlanRow> plan() const = 0;
+    // Memory that particles, cells and neighbour lists take on the device.
+    virtual int64_t bytes() const = 0;
     // "CPU, 2 threads, AVX-512, float"
     virtual std::string deviceName() const = 0;
+    // The number of the CUDA device that steps, or hostMemory (-1).
+    virtual int cudaDevice() const = 0;
 };
 
-// Chooses the backend by scene.compute and builds the particles. Throws Error (NoDevice, Memory, Scene).
+// Chooses the backend by scene.compute, builds the particles, or goes on from a state. Throws Error (NoDevice, Memory,
+// Scene).
 std::unique_ptr<Simulation> makeSimulation(const Scene&);
+std::unique_ptr<Simulation> makeSimulation(const Scene&, const RunState&);
+// Why this scene can't run on a GPU, in one line; "" when it can.
+std::string whyNoGpu(const Scene&);
 
 }  // namespace spindrift

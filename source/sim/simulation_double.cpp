@@ -8,8 +8,8 @@
 
 namespace spindrift {
 
-std::unique_ptr<Simulation> makeDoubleSimulation(const Scene& scene, const Placement& placement, int threads) {
-    return std::make_unique<doubles::SimulationOn<Omp>>(scene, placement, Omp(threads), cpuName(threads, "double"));
+std::unique_ptr<Simulation> makeDoubleSimulation(const Scene& scene, const RunState& state, int threads) {
+    return std::make_unique<doubles::SimulationOn<Omp>>(scene, state, Omp(threads), cpuName(threads, "double"));
 }
 
 }  // namespace spindrift

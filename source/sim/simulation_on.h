@@ -15,30 +15,28 @@
 #include "sim/search.h"
 #include "sim/simulation.h"
 
-#include <chrono>
 #include <numeric>
 #include <string>
+#include <utility>
 
 namespace spindrift::LANES {
 
 template <class Device> class SimulationOn final : public Simulation {
 public:
-    SimulationOn(const Scene& scene, const Placement& placement, Device device, std::string deviceName)
+    SimulationOn(const Scene& scene, const RunState& state, Device device, std::string deviceName)
         : device_(std::move(device)), deviceName_(std::move(deviceName)), scene_(scene),
-          fluidCount_(int(placement.positions.size())), wallCount_(int(placement.walls.size())),
-          extent_(extentOf(placement)),
-          grid_(makeGrid(scene, placement.positions.size() + placement.walls.size())) {
-        fluid_.upload(placement.positions, placement.velocities, 0);
-        walls_.upload(placement.walls, {}, fluidCount_);
-        state_.resize(1);
-        const StepState start;
-        device_.upload(state_.data(), &start, 1);
+          fluidCount_(int(state.particles.positions.size())), wallCount_(int(state.particles.walls.size())),
+          extent_(state.start), grid_(makeGrid(scene, size_t(fluidCount_) + size_t(wallCount_))) {
+        fluid_.upload(state.particles.positions, state.particles.velocities, 0);
+        walls_.upload(state.particles.walls, {}, fluidCount_);
+        clock_.resize(1);
+        device_.upload(clock_.data(), &state.clock, 1);
         extremes_.resize(1);
         apply(scene);
         placeWalls();
         // Density and acceleration of the first picture.
         for (Row& row : plan_)
-            if (row.initial) (this->*row.run)();
+            if (row.initial == Initial::Yes) (this->*row.run)();
     }
 
     void apply(const Scene& scene) override {
@@ -48,6 +46,8 @@ public:
             constants_ = makeConstants<K>(scene_, extent_);
             makePlan<K>();
         });
+        if constexpr (Device::recordsSteps)
+            for (auto& recording : recordings_) recording.outdate();
     }
     void stir(const Stir& s) override {
         stir_ = s;
@@ -55,71 +55,109 @@ public:
     }
 
     void step(int count) override {
-        for (int k = 0; k < count; ++k)
-            for (Row& row : plan_) {
-                const auto start = std::chrono::steady_clock::now();
-                (this->*row.run)();
-                row.time->ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-                ++row.time->runs;
-            }
+        for (int k = 0; k < count; ++k) stepOnce();
     }
+    std::vector<double> timeSteps(int count) override {
+        return device_.timeEach(count, [&] { stepOnce(); });
+    }
+    void wait() override { device_.wait(); }
 
     int fluidCount() const override { return fluidCount_; }
     int wallCount() const override { return wallCount_; }
     std::string deviceName() const override { return deviceName_; }
+    int cudaDevice() const override { return device_.index(); }
 
-    Range writeVertices(Vertex* out, ColorBy by, bool withWalls) override {
-        const View v = view();
-        ValueRange unused;
-        if (withWalls) device_.reduce(v.walls.slots, WriteVertices<PlainValue>{v.walls, out}, &unused);
-        switch (by) {
-            case ColorBy::Plain: return write<PlainValue>(v.fluid, out);
-            case ColorBy::Velocity: return write<SpeedValue>(v.fluid, out);
-            case ColorBy::Pressure: return write<PressureValue>(v.fluid, out);
-            case ColorBy::Density: return write<DensityValue>(v.fluid, out);
-            case ColorBy::Acceleration: return write<AccelerationValue>(v.fluid, out);
-            case ColorBy::Id: return write<IdValue>(v.fluid, out);
-        }
-        return {0, 0};
+    Range writeVertices(VertexMemory out, ColorBy by, bool withWalls) override {
+        if (out.device == device_.index()) return writeVertices(out.data, by, withWalls);
+        CHECK(out.device == hostMemory);
+        const int count = fluidCount_ + (withWalls ? wallCount_ : 0);
+        staging_.resize(count);
+        const Range range = writeVertices(staging_.data(), by, withWalls);
+        device_.download(out.data, staging_.data(), count);
+        return range;
     }
 
     Measurement measure() override;
+    RunState state() override {
+        RunState s;
+        s.particles = {fluid_.positions(fluidCount_, 0), fluid_.velocities(fluidCount_, 0),
+                       walls_.positions(wallCount_, fluidCount_)};
+        device_.download(&s.clock, clock_.data(), 1);
+        s.start = extent_;
+        return s;
+    }
     std::vector<Particle> particles() override { return fluid_.download(fluidCount_, scene_.domain.min); }
     Particle particle(int id) override { return fluid_.downloadOne(id, scene_.domain.min); }
 
-    std::vector<PassTime> times() const override {
+    std::vector<PlanRow> plan() const override { return rows_; }
+    int64_t bytes() const override {
+        int64_t lists = 0;
+        for (const NeighbourLists* l : {&fluidNearFluid_, &wallsNearFluid_, &fluidNearWalls_}) lists += l->bytes();
+        return device_.bytes() + lists;
+    }
+
+    std::vector<PassTime> times() override {
+        device_.collectTimes();
         std::vector<PassTime> rows;
         for (const PassTime& t : times_)
             if (t.runs > 0) rows.push_back(t);
         return rows;
     }
     void resetTimes() override {
+        device_.collectTimes();
         for (PassTime& t : times_) t.ms = 0, t.runs = 0;
+        measureNext_ = true;
     }
 
 private:
+    enum class Initial : bool { No, Yes };   // also run before the first step, so that there is something to see?
     struct Row {
         const char* name;
         void (SimulationOn::*run)();
-        bool initial = false;        // also run before the first step, so that there is something to see
+        Initial initial;
         PassTime* time = nullptr;
     };
 
     // The passes that this scene needs, in order. What it doesn't need isn't in the list.
     template <class K> void makePlan() {
-        plan_.clear();
-        plan_.push_back({"sort", &SimulationOn::sortFluid, true});
-        if (keepsLists) plan_.push_back({"neighbours", &SimulationOn::findNeighbours, true});
-        plan_.push_back({"density", &SimulationOn::template onFluid<ComputeDensity<K>>, true});
-        if (wallsCarryPressure())
-            plan_.push_back({"wall pressure", &SimulationOn::template onWalls<ExtrapolateWallPressure<K>>, true});
-        plan_.push_back({"forces", chooseTerms(scene_, [](auto terms) { return forces<K>(terms); },
-                                               TermList<PressureForce>{}, OptionalTerms{}), true});
-        if (keepsLists || constants_.fixedStep <= 0) plan_.push_back({"extremes", &SimulationOn::findExtremes});
-        plan_.push_back({"time step", &SimulationOn::chooseTimeStep});
-        if (stir_.radius > 0) plan_.push_back({"stir", &SimulationOn::template onFluid<StirFluid>});
-        plan_.push_back({"integrate", &SimulationOn::template onFluid<Integrate>});
+        using S = SimulationOn;
+        plan_.clear(), rows_.clear();
+        plan("sort", &S::sortFluid, Initial::Yes);
+        plan("neighbours", &S::findNeighbours, Initial::Yes, keepsLists ? "" : "rows of cells are walked instead of lists");
+        plan("density", &S::template onFluid<ComputeDensity<K>>, Initial::Yes);
+        plan("wall pressure", &S::template onWalls<ExtrapolateWallPressure<K>>, Initial::Yes, whyNoWallPressure());
+        plan("forces", chooseTerms(scene_, [](auto terms) { return forces<K>(terms); }, TermList<PressureForce>{},
+                                   OptionalTerms{}), Initial::Yes);
+        plan("extremes", &S::findExtremes, Initial::No,
+             keepsLists || constants_.fixedStep <= 0 ? "" : "the time step is fixed (time.mode)");
+        plan("time step", &S::chooseTimeStep);
+        plan("stir", &S::template onFluid<StirFluid>, Initial::No, stir_.radius > 0 ? "" : "nobody stirs");
+        plan("integrate", &S::template onFluid<Integrate>);
         for (Row& row : plan_) row.time = timeOf(row.name);
+    }
+    void plan(const char* name, void (SimulationOn::*run)(), Initial initial = Initial::No, const char* skipped = "") {
+        rows_.push_back({name, skipped});
+        if (!*skipped) plan_.push_back({name, run, initial});
+    }
+    const char* whyNoWallPressure() const {
+        if (wallCount_ == 0) return "there are no boundary particles";
+        return wallsCarryPressure() ? "" : "walls have no pressure in the classic formulation";
+    }
+
+    void stepOnce() {
+        const bool measured = std::exchange(measureNext_, false);
+        if constexpr (Device::recordsSteps) {
+            if (!measured) return stepFromRecording();
+        }
+        for (Row& row : plan_) device_.timed(row.time, [&] { (this->*row.run)(); });
+    }
+    // One recording for each side of the particles' buffers.
+    void stepFromRecording() {
+        auto& recording = recordings_[fluid_.side()];
+        if (device_.replay(recording)) return fluid_.flip();
+        device_.record(recording, [&] {
+            for (Row& row : plan_) (this->*row.run)();
+        });
     }
     template <class K, class... Ts> static auto forces(TermList<Ts...>) {
         return &SimulationOn::template onFluid<ComputeForces<K, TermList<Ts...>>>;
@@ -158,7 +196,7 @@ private:
     void findExtremes() { device_.reduce(fluid_.slots(), FindExtremes{fluid_.view()}, extremes_.data()); }
     void chooseTimeStep() {
         device_.forEach(1, ChooseTimeStep{view(), extremes_.data()});
-        if (keepsLists) travel_ += state_.data()->dt * largestSpeed(state_.data()->dt);
+        if constexpr (keepsLists) travel_ += clock_.data()->dt * largestSpeed(clock_.data()->dt);
     }
     // Of any particle at the end of a step of length dt, stirring included.
     double largestSpeed(double dt) const {
@@ -175,6 +213,7 @@ private:
             device_.forEach(walls_.slots(), ComputeWallMass<decltype(kernel)>{view()});
         });
         wallsNearWalls_ = {};
+        walls_.keepOrder();
     }
 
     View view() {
@@ -183,26 +222,36 @@ private:
                {wallsNearFluid_.data(), walls_.cellStart(), walls_.view().position},
                {fluidNearWalls_.data(), fluid_.cellStart(), fluid_.view().position},
                {wallsNearWalls_.data(), walls_.cellStart(), walls_.view().position},
-               grid_, constants_, state_.data()};
+               grid_, constants_, clock_.data()};
         v.c.stirCenter = toVector(stir_.center - scene_.domain.min);
         v.c.stirVelocity = toVector(stir_.velocity);
         v.c.stirRadius = stir_.radius;
         return v;
     }
-    template <class Value> Range write(const Particles& p, Vertex* out) {
-        ValueRange range;
-        device_.reduce(p.slots, WriteVertices<Value>{p, out}, &range);
-        if (!(range.high > range.low)) return {range.low, range.high};
-        Histogram histogram;
-        device_.reduce(p.slots, CountValues<Value>{p, range}, &histogram);
-        return withoutOutliers(range, histogram);
+    Range writeVertices(Vertex* out, ColorBy by, bool withWalls) {
+        const View v = view();
+        if (withWalls) device_.template sum<ValueRange>(v.walls.slots, WriteVertices<PlainValue>{v.walls, out});
+        switch (by) {
+            case ColorBy::Plain: return write<PlainValue>(v.fluid, out);
+            case ColorBy::Velocity: return write<SpeedValue>(v.fluid, out);
+            case ColorBy::Pressure: return write<PressureValue>(v.fluid, out);
+            case ColorBy::Density: return write<DensityValue>(v.fluid, out);
+            case ColorBy::Acceleration: return write<AccelerationValue>(v.fluid, out);
+            case ColorBy::Id: return write<IdValue>(v.fluid, out);
+        }
+        return {0, 0};
     }
-    static Range withoutOutliers(ValueRange range, const Histogram& h) {
-        const int all = std::accumulate(h.count, h.count + Histogram::bins, 0), outliers = all / 200;
-        int low = 0, high = Histogram::bins - 1;
-        for (int n = h.count[low]; n <= outliers && low < high; n += h.count[low]) ++low;
-        for (int n = h.count[high]; n <= outliers && high > low; n += h.count[high]) --high;
-        const float bin = (range.high - range.low) / (Histogram::bins - 1);
+    template <class Value> Range write(const Particles& p, Vertex* out) {
+        const auto range = device_.template sum<ValueRange>(p.slots, WriteVertices<Value>{p, out});
+        if (!(range.high > range.low)) return {range.low, range.high};
+        return withoutOutliers(range, device_.histogram(p.slots, CountValues<Value>{p, range}));
+    }
+    static Range withoutOutliers(ValueRange range, const std::vector<int>& counts) {
+        const int all = std::accumulate(counts.begin(), counts.end(), 0), outliers = all / 200;
+        int low = 0, high = int(counts.size()) - 1;
+        for (int n = counts[low]; n <= outliers && low < high; n += counts[low]) ++low;
+        for (int n = counts[high]; n <= outliers && high > low; n += counts[high]) --high;
+        const float bin = (range.high - range.low) / float(counts.size() - 1);
         return {range.low + bin * float(low), std::min(range.high, range.low + bin * float(high + 1))};
     }
 
@@ -215,10 +264,14 @@ private:
     Grid grid_;
     Constants constants_{};
     std::vector<Row> plan_;
+    std::vector<PlanRow> rows_;
     std::vector<PassTime> times_;
     ParticleSet<Device> fluid_{device_, Kind::Fluid}, walls_{device_, Kind::Walls};
-    Buffer<StepState, Device> state_{device_};
+    Buffer<StepState, Device> clock_{device_};
     Buffer<Extremes, Device> extremes_{device_};
+    Buffer<Vertex, Device> staging_{device_};   // for vertices that the host is to have
+    bool measureNext_ = true;
+    typename Device::Recording recordings_[2];
     static constexpr bool keepsLists = clusterSize > 1;
     double travel_ = 1e30;      // m, bound of any particle's way since the lists were built
     Boxes boxes_, wallBoxes_;
@@ -226,10 +279,9 @@ private:
 };
 
 template <class Device> Measurement SimulationOn<Device>::measure() {
-    Totals t;
-    device_.reduce(fluid_.slots(), SumUp{fluid_.view(), scene_.fluid.restDensity}, &t);
+    const Totals t = device_.template sum<Totals>(fluid_.slots(), SumUp{fluid_.view(), scene_.fluid.restDensity});
     StepState state;
-    device_.download(&state, state_.data(), 1);
+    device_.download(&state, clock_.data(), 1);
     const double n = fluidCount_, mass = particleMass(scene_), rho0 = scene_.fluid.restDensity;
     const Vec3d center = (1 / n) * Vec3d{t.position[0], t.position[1], t.position[2]};
     Measurement m;

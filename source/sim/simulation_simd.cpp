@@ -26,9 +26,9 @@ HWY_BEFORE_NAMESPACE();
 #include "sim/simulation_on.h"
 namespace spindrift::HWY_NAMESPACE {
 
-std::unique_ptr<Simulation> makeOmp(const Scene& scene, const Placement& placement, int threads,
+std::unique_ptr<Simulation> makeOmp(const Scene& scene, const RunState& state, int threads,
                                     const std::string& name) {
-    return std::make_unique<SimulationOn<Omp>>(scene, placement, Omp(threads), name);
+    return std::make_unique<SimulationOn<Omp>>(scene, state, Omp(threads), name);
 }
 
 }  // namespace spindrift::HWY_NAMESPACE
@@ -44,7 +44,7 @@ static constexpr SimdTarget targets[] = {{Simd::Avx512, HWY_AVX3, "AVX-512"},
                                          {Simd::Avx2, HWY_AVX2, "AVX2"},
                                          {Simd::Sse, HWY_SSSE3, "SSE"}};
 
-std::unique_ptr<Simulation> makeSimdSimulation(const Scene& scene, const Placement& placement, int threads) {
+std::unique_ptr<Simulation> makeSimdSimulation(const Scene& scene, const RunState& state, int threads) {
     hwy::SetSupportedTargetsForTest(0);   // forgets an earlier choice
     const int64_t machine = hwy::SupportedTargets();
     for (const SimdTarget& t : targets) {
@@ -53,7 +53,7 @@ std::unique_ptr<Simulation> makeSimdSimulation(const Scene& scene, const Placeme
         hwy::SetSupportedTargetsForTest(t.target);
         hwy::GetChosenTarget().Update(hwy::SupportedTargets());
         const std::string name = cpuName(threads, std::string(t.name) + ", float");
-        return HWY_DYNAMIC_DISPATCH(makeOmp)(scene, placement, threads, name);
+        return HWY_DYNAMIC_DISPATCH(makeOmp)(scene, state, threads, name);
     }
     throw Error(Exit::NoDevice, "compute.simd: this processor does not have that instruction set; use auto");
 }

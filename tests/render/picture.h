@@ -33,7 +33,7 @@ inline Image picture(const std::vector<Vertex>& vertices, const DrawSettings& se
     Renderer& renderer = rendererOf(width, height, samples);
     VertexBuffer buffer;
     buffer.resize(int(vertices.size()));
-    std::copy(vertices.begin(), vertices.end(), buffer.map());
+    std::copy(vertices.begin(), vertices.end(), buffer.map().data);
     buffer.unmap();
     renderer.draw(buffer, settings);
     return renderer.image();

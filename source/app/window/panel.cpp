@@ -77,9 +77,8 @@ void curves(const Ui& ui) {
 
 // Disabled with its reason as tooltip, as long as there is no GPU.
 void backend(Ui& ui) {
-    const bool onGpu = ui.player.scene.compute.backend == Backend::Cuda;
     ImGui::BeginDisabled(!ui.noGpu.empty());
-    if (ImGui::Button(onGpu ? "Run on the CPU" : "Run on the GPU", {-1, 0})) ui.switchBackend();
+    if (ImGui::Button(ui.onGpu ? "Run on the CPU" : "Run on the GPU", {-1, 0})) ui.switchBackend();
     ImGui::EndDisabled();
     if (!ui.noGpu.empty() && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
         ImGui::SetTooltip("%s", ui.noGpu.c_str());

@@ -68,11 +68,20 @@ void Player::load(const std::string& file) {
     initialCamera_ = scene.view.camera;
 }
 
-void Player::reset(Backend backend) {
+void Player::reset() {
     Scene next = scene;
-    next.compute.backend = backend;
     auto simulation = makeSimulation(next);
     begin(std::move(next), std::move(simulation));
+}
+
+void Player::switchBackend(Backend backend) {
+    while (stepper_->busy()) stepper_->wait(1);
+    Scene next = scene;
+    next.compute.backend = backend;
+    stepper_ = std::make_unique<Stepper>(makeSimulation(next, stepper_->simulation().state()));
+    scene.compute.backend = backend;
+    collected_ = stirWanted_ = false;
+    ++generation_;
 }
 
 void Player::stepOnce() {

@@ -36,14 +36,18 @@ public:
 
     // Blocks until the step at hand is done. Throws Error; then nothing has changed.
     void load(const std::string& file);
-    void reset(Backend);
-    void reset() { reset(scene.compute.backend); }
+    void reset();
+    // Goes on from where the run stands, on the other device.
+    void switchBackend(Backend);
 
     // True when the simulation is at hand: the requests are met, measurement() is new, simulation()
     // may be used until proceed(). `moved` tells whether steps were made since the last time.
     bool collect(bool& moved);
     // Starts the steps that real time asks for, as many as fit into `budget` seconds of wall time.
     void proceed(double budget);
+
+    // Stops the run and says why.
+    void halt(const std::string& why);
 
     bool busy() const { return stepper_->busy(); }
     void wait(double seconds) const { stepper_->wait(seconds); }
@@ -57,7 +61,6 @@ public:
 
 private:
     void begin(Scene, std::unique_ptr<Simulation>);
-    void halt(const std::string& why);
     void takeMeasurement();
     void meetRequests();
     void updateRates();

@@ -57,10 +57,9 @@ void Ui::load(const std::string& file) {
 
 void Ui::switchBackend() {
     if (!noGpu.empty()) return say("no GPU to switch to: " + noGpu, true);
-    const bool onGpu = player.scene.compute.backend == Backend::Cuda;
     try {
-        player.reset(onGpu ? Backend::Cpu : Backend::Cuda);
-        say("started again on the " + std::string(onGpu ? "CPU" : "GPU"));
+        player.switchBackend(onGpu ? Backend::Cpu : Backend::Cuda);
+        say(std::string("goes on, on the ") + (onGpu ? "CPU" : "GPU"));
     } catch (const Error& error) { say(error.what(), true); }
 }
 

@@ -27,7 +27,7 @@ struct Message {
 
 struct Ui {
     // Needs a current GL context.
-    Ui(Scene scene, int samples) : player(std::move(scene)), frame(1, 1, samples) {}
+    Ui(Scene scene, int samples) : player(onDrawingDevice(std::move(scene))), frame(1, 1, samples) {}
 
     Player player;
     Frame frame;
@@ -53,6 +53,7 @@ struct Ui {
     std::vector<std::string> scenes;  // that come with the program
     std::vector<PassTime> times;
     std::string device, glRenderer;
+    bool onGpu = false;               // steps
     int fluidCount = 0, wallCount = 0;
     double drawMs = 0;  // of the last picture
 

@@ -105,17 +105,6 @@ float scaleOf(SDL_Window* window) {
     return std::clamp(std::round(dots / dense * 4) / 4, 1.0f, 3.0f);
 }
 
-// Tried once with a few particles, so that the switch can say beforehand why it's off.
-std::string whyNoGpu() {
-    Scene small;
-    small.simulation.spacing = 0.25f;
-    small.compute.backend = Backend::Cuda;
-    try {
-        makeSimulation(small);
-    } catch (const Error& error) { return error.what(); }
-    return {};
-}
-
 class Desktop {
 public:
     explicit Desktop(Scene scene)
@@ -125,7 +114,7 @@ public:
           ui_(std::move(scene), samples_) {
         ui_.scale = scaleOf(screen_.window);
         ui_.scenes = shippedScenes();
-        ui_.noGpu = whyNoGpu();
+        ui_.noGpu = whyNoGpu(ui_.player.scene);
         ui_.glRenderer = glName();
         const Vec3 size = ui_.player.scene.domain.max - ui_.player.scene.domain.min;
         ui_.stirRadius = 0.12f * std::min({size.x, size.y, size.z});
@@ -192,18 +181,25 @@ private:
         if (!ui_.player.collect(moved)) return;
         if (generation_ != ui_.player.generation()) startOver();
         moved_ |= moved;
-        if (ui_.rewrite || (moved_ && timeForPicture())) {
-            ui_.frame.update(ui_.player.simulation(), ui_.player.scene);
-            ui_.refreshPicked();
-            ui_.rewrite = moved_ = false;
-            ui_.stale = true;
+        try {
+            if (ui_.rewrite || (moved_ && timeForPicture())) updateVertices();
+            if (ui_.pickAt) ui_.pick();
+        } catch (const Error& error) {   // a GPU was lost
+            ui_.player.halt(error.what());
+            ui_.pickAt.reset();
         }
-        if (ui_.pickAt) ui_.pick();
         readTimes();
         // While one picture is drawn, the steps for the next are made; a slow picture leaves time
         // for more.
         constexpr double least = 0.012, most = 0.050;  // s
         ui_.player.proceed(std::clamp(ui_.stale ? 1e-3 * ui_.drawMs : 0, least, most));
+    }
+
+    void updateVertices() {
+        ui_.rewrite = moved_ = false;
+        ui_.stale = true;
+        ui_.frame.update(ui_.player.simulation(), ui_.player.scene);
+        ui_.refreshPicked();
     }
 
     // Where the processor draws, a run that's late gets at least as much of it as the pictures do.
@@ -217,6 +213,7 @@ private:
         ui_.frame.restartRange();
         Simulation& simulation = ui_.player.simulation();
         ui_.device = simulation.deviceName();
+        ui_.onGpu = simulation.cudaDevice() != hostMemory;
         ui_.fluidCount = simulation.fluidCount();
         ui_.wallCount = simulation.wallCount();
         ui_.rewrite = ui_.stale = true;

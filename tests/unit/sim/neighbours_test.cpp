@@ -15,17 +15,19 @@ namespace {
 
 constexpr double Pi = 3.14159265358979323846;
 
-struct Engine { const char* name; Simd simd; Precision precision; double tolerance; };
+struct Engine { const char* name; Simd simd; Precision precision; double tolerance; bool cuda = false; };
 constexpr Engine Engines[] = {{"avx512", Simd::Avx512, Precision::Float, 2e-5},
                               {"avx2", Simd::Avx2, Precision::Float, 2e-5},
                               {"sse", Simd::Sse, Precision::Float, 2e-5},
-                              {"double", Simd::Auto, Precision::Double, 1e-6}};   // its input is rounded to float
+                              {"double", Simd::Auto, Precision::Double, 1e-6},   // its input is rounded to float
+                              {"CUDA device", Simd::Auto, Precision::Float, 2e-5, true}};
 
-// The simulation, or nothing where this processor lacks the instructions.
+// The simulation, or nothing where this machine lacks the instructions or the GPU.
 std::unique_ptr<Simulation> tryMake(Scene scene, const Placement& p, const Engine& e, int threads = 2) {
     scene.compute.simd = e.simd;
     if (e.precision == Precision::Double) return makeDoubleSimulation(scene, p, threads);
     try {
+        if (e.cuda) return makeCudaSimulation(scene, p, 0);
         return makeSimdSimulation(scene, p, threads);
     } catch (const Error&) {
         return nullptr;

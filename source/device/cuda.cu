@@ -1,0 +1,282 @@
+#include "device/cuda.h"
+
+#include <cub/device/device_scan.cuh>
+
+#include <algorithm>
+
+namespace spindrift {
+
+using namespace cudaKernels;
+
+// --- the passes of the sort ---
+// A counting sort: particles per cell, running sum, a place in its cell for each. Atomic operations hand the places out in
+// any order; each particle then counts those of its cell that come before it, which makes the sort stable.
+
+namespace {
+
+struct CountCells {
+    const int* key;
+    int* counts;
+    __device__ void operator()(int i) const { atomicAdd(&counts[key[i]], 1); }
+};
+struct PlaceInCell {
+    const int* key;
+    const int* cellStart;
+    int* counts;
+    int* unordered;
+    __device__ void operator()(int i) const {
+        unordered[cellStart[key[i]] + atomicSub(&counts[key[i]], 1) - 1] = i;
+    }
+};
+struct OrderInCell {
+    const int* key;
+    const int* cellStart;
+    const int* unordered;
+    int* order;
+    __device__ void operator()(int slot) const {
+        const int item = unordered[slot], begin = cellStart[key[item]], end = cellStart[key[item] + 1];
+        int before = 0;
+        for (int s = begin; s < end; ++s) before += unordered[s] < item;
+        order[begin + before] = item;
+    }
+};
+
+}  // namespace
+
+// --- which devices ---
+
+static std::string version(int number) {
+    return std::to_string(number / 1000) + "." + std::to_string(number % 1000 / 10);
+}
+
+static std::string noDriverOrTooOld() {
+    int driver = 0, runtime = 0;
+    cudaDriverGetVersion(&driver);
+    cudaRuntimeGetVersion(&runtime);
+    if (driver == 0) return "there is no NVIDIA driver on this machine";
+    return "the NVIDIA driver knows CUDA " + version(driver) + ", this program needs " + version(runtime) +
+           "; update the driver";
+}
+
+std::string cudaProblem(int index) {
+    int count = 0;
+    const cudaError_t code = cudaGetDeviceCount(&count);
+    if (code != cudaSuccess) cudaGetLastError();
+    if (code == cudaErrorInsufficientDriver) return noDriverOrTooOld();
+    if (code == cudaErrorNoDevice || (code == cudaSuccess && count == 0)) return "no CUDA device";
+    if (code != cudaSuccess) return std::string("CUDA does not start: ") + cudaGetErrorString(code);
+    if (index < 0 || index >= count)
+        return "no CUDA device " + std::to_string(index) + "; there are " + std::to_string(count) + ", counted from 0";
+    // A kernel that the build has for no architecture of this device can't be loaded.
+    cudaFuncAttributes attributes{};
+    cudaDeviceProp device{};
+    if (cudaGetDeviceProperties(&device, index) != cudaSuccess || cudaSetDevice(index) != cudaSuccess)
+        return "CUDA device " + std::to_string(index) + " does not answer: " + cudaGetErrorString(cudaGetLastError());
+    if (const cudaError_t load = cudaFuncGetAttributes(&attributes, runPass<CountCells>); load != cudaSuccess) {
+        cudaGetLastError();
+        const std::string architecture = std::to_string(device.major) + std::to_string(device.minor);
+        return "this build has no code for " + std::string(device.name) + " (" + cudaGetErrorString(load) +
+               "); build with -DSPINDRIFT_CUDA_ARCHITECTURES=" + architecture;
+    }
+    return "";
+}
+
+std::string cudaDeviceName(int index) {
+    cudaDeviceProp device{};
+    requireCuda(cudaGetDeviceProperties(&device, index), "asking for a device's name");
+    return device.name;
+}
+
+int64_t cudaFreeMemory(int index) {
+    size_t free = 0, all = 0;
+    requireCuda(cudaSetDevice(index), "choosing a device");
+    requireCuda(cudaMemGetInfo(&free, &all), "asking for free memory");
+    return int64_t(free);
+}
+
+void requireCuda(cudaError_t code, const char* what) {
+    if (code == cudaSuccess) return;
+    cudaGetLastError();   // the next call must not find it again
+    const std::string message = std::string(what) + ": " + cudaGetErrorString(code);
+    if (code == cudaErrorMemoryAllocation)
+        throw Error(Exit::Memory, "out of GPU memory while " + message + "; raise simulation.spacing or use --backend cpu");
+    if (code == cudaErrorNoDevice || code == cudaErrorInsufficientDriver || code == cudaErrorNoKernelImageForDevice)
+        throw Error(Exit::NoDevice, "the GPU can't be used while " + message + "; use --backend cpu");
+    throw Error(Exit::DeviceLost, "the GPU was lost while " + message + "; start again, or use --backend cpu");
+}
+
+// --- the device ---
+
+Cuda::Cuda(int index) : index_(index) {
+    if (const std::string problem = cudaProblem(index); !problem.empty())
+        throw Error(Exit::NoDevice, "--backend cuda: " + problem + "; or use --backend cpu");
+    activate();
+    requireCuda(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "making a stream");
+    scratch_ = allocateBytes(scratchBytes);
+}
+
+Cuda::Cuda(Cuda&& other) noexcept
+    : index_(other.index_), stream_(std::exchange(other.stream_, nullptr)),
+      scratch_(std::exchange(other.scratch_, nullptr)), bytes_(other.bytes_) {}
+
+// Errors are of no use here: a device that was lost has lost its memory too.
+Cuda::~Cuda() {
+    if (!stream_) return;
+    cudaSetDevice(index_);
+    cudaStreamSynchronize(stream_);
+    cudaFree(scratch_), cudaFree(sortSpace_);
+    for (const Span& s : spans_) cudaEventDestroy(s.begin), cudaEventDestroy(s.end);
+    for (cudaEvent_t event : idle_) cudaEventDestroy(event);
+    cudaStreamDestroy(stream_);
+}
+
+void Cuda::activate() const { requireCuda(cudaSetDevice(index_), "choosing a device"); }
+
+void* Cuda::allocateBytes(size_t bytes) {
+    CHECK(!recording_);
+    activate();
+    void* memory = nullptr;
+    requireCuda(cudaMalloc(&memory, std::max<size_t>(bytes, 1)), "making room for particles");
+    bytes_ += int64_t(bytes);
+    clear(memory, bytes);
+    return memory;
+}
+
+void Cuda::release(void* p, size_t bytes) {
+    if (!p) return;
+    CHECK(!recording_);
+    cudaSetDevice(index_);
+    cudaFree(p);   // waits for the work that may still use it
+    bytes_ -= int64_t(bytes);
+}
+
+void Cuda::copy(void* to, const void* from, size_t bytes, cudaMemcpyKind kind) const {
+    if (bytes == 0) return;
+    CHECK(!recording_);
+    activate();
+    requireCuda(cudaMemcpyAsync(to, from, bytes, kind, stream_), "copying");
+    requireCuda(cudaStreamSynchronize(stream_), "stepping");
+}
+
+void Cuda::clear(void* memory, size_t bytes) {
+    activate();
+    requireCuda(cudaMemsetAsync(memory, 0, bytes, stream_), "clearing memory");
+}
+
+void Cuda::wait() const {
+    activate();
+    requireCuda(cudaStreamSynchronize(stream_), "stepping");
+}
+
+int Cuda::sortByCell(int n, const int* key, int rows, int rowLength, int pad, int* cellStart, Buffer<int, Cuda>& order) {
+    CHECK(pad == 1);
+    const size_t cells = size_t(rows) * size_t(rowLength), aligned = 256;
+    auto padded = [&](size_t numbers) { return (numbers * sizeof(int) + aligned - 1) / aligned * aligned; };
+    size_t scanBytes = 0;
+    requireCuda(cub::DeviceScan::ExclusiveSum(nullptr, scanBytes, key, cellStart, int(cells + 1), stream_), "sorting");
+    const size_t bytes = padded(cells + 1) + padded(size_t(n)) + scanBytes;
+    if (bytes > sortSpaceBytes_) {
+        release(std::exchange(sortSpace_, nullptr), std::exchange(sortSpaceBytes_, 0));
+        sortSpace_ = allocateBytes(bytes);
+        sortSpaceBytes_ = bytes;
+    }
+    char* space = static_cast<char*>(sortSpace_);
+    int* counts = reinterpret_cast<int*>(space);
+    int* unordered = reinterpret_cast<int*>(space + padded(cells + 1));
+    void* scan = space + padded(cells + 1) + padded(size_t(n));
+
+    order.resize(n);
+    clear(counts, (cells + 1) * sizeof(int));
+    forEach(n, CountCells{key, counts});
+    requireCuda(cub::DeviceScan::ExclusiveSum(scan, scanBytes, counts, cellStart, int(cells + 1), stream_), "sorting");
+    forEach(n, PlaceInCell{key, cellStart, counts, unordered});
+    forEach(n, OrderInCell{key, cellStart, unordered, order.data()});
+    return n;
+}
+
+// --- recordings ---
+
+CudaRecording::~CudaRecording() {
+    if (graph_) cudaGraphExecDestroy(graph_);
+}
+
+bool Cuda::replay(Recording& recording) {
+    if (!recording.current_) return false;
+    activate();
+    requireCuda(cudaGraphLaunch(recording.graph_, stream_), "starting a step");
+    return true;
+}
+
+void Cuda::beginRecording() {
+    activate();
+    requireCuda(cudaStreamBeginCapture(stream_, cudaStreamCaptureModeThreadLocal), "recording a step");
+    recording_ = true;
+}
+
+void Cuda::abandonRecording() {
+    recording_ = false;
+    cudaGraph_t graph = nullptr;
+    if (cudaStreamEndCapture(stream_, &graph) == cudaSuccess && graph) cudaGraphDestroy(graph);
+    cudaGetLastError();
+}
+
+void Cuda::endRecording(Recording& recording) {
+    recording_ = false;
+    cudaGraph_t graph = nullptr;
+    requireCuda(cudaStreamEndCapture(stream_, &graph), "recording a step");
+    // The same passes with other constants fit into what is there, which is quicker than making it anew.
+    cudaGraphExecUpdateResultInfo info{};
+    if (recording.graph_ && cudaGraphExecUpdate(recording.graph_, graph, &info) != cudaSuccess) {
+        cudaGetLastError();
+        cudaGraphExecDestroy(recording.graph_);
+        recording.graph_ = nullptr;
+    }
+    const cudaError_t made = recording.graph_ ? cudaSuccess : cudaGraphInstantiate(&recording.graph_, graph, 0);
+    cudaGraphDestroy(graph);
+    requireCuda(made, "recording a step");
+    recording.current_ = true;
+    replay(recording);
+}
+
+// --- clocks ---
+
+cudaEvent_t Cuda::mark() {
+    activate();
+    cudaEvent_t event = nullptr;
+    if (idle_.empty()) {
+        requireCuda(cudaEventCreate(&event), "measuring time");
+    } else {
+        event = idle_.back();
+        idle_.pop_back();
+    }
+    requireCuda(cudaEventRecord(event, stream_), "measuring time");
+    return event;
+}
+
+void Cuda::collectTimes() {
+    if (spans_.empty()) return;
+    wait();
+    for (const Span& s : spans_) {
+        float ms = 0;
+        requireCuda(cudaEventElapsedTime(&ms, s.begin, s.end), "measuring time");
+        s.time->ms += ms;
+        ++s.time->runs;
+        idle_.push_back(s.begin);
+        idle_.push_back(s.end);
+    }
+    spans_.clear();
+}
+
+std::vector<double> Cuda::intervals(const std::vector<cudaEvent_t>& events) {
+    wait();
+    std::vector<double> all;
+    for (size_t k = 1; k < events.size(); ++k) {
+        float ms = 0;
+        requireCuda(cudaEventElapsedTime(&ms, events[k - 1], events[k]), "measuring time");
+        all.push_back(ms);
+    }
+    idle_.insert(idle_.end(), events.begin(), events.end());
+    return all;
+}
+
+}  // namespace spindrift

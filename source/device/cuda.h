@@ -1,0 +1,209 @@
+#pragma once
+// One NVIDIA GPU: its memory, and its kernels on one stream. The host waits only where it reads something. Results don't
+// depend on the order in which threads run: loops write their own elements only, the sort is stable, sums go by a fixed
+// tree, and the only atomic operations add integers. Compiled by nvcc, and by the host compiler over the emulation of
+// tests/cuda.
+#include "core/error.h"
+#include "core/pass_time.h"
+#include "device/buffer.h"
+#include "device/cuda_devices.h"
+
+#include <cuda_runtime.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <new>
+#include <utility>
+#include <vector>
+
+namespace spindrift {
+
+// Throws Error (Memory, NoDevice, DeviceLost) unless the call succeeded; `what` says what was being done.
+void requireCuda(cudaError_t, const char* what);
+
+namespace cudaKernels {
+
+inline constexpr int blockSize = 128;      // threads that run a pass
+inline constexpr int sumBlockSize = 128;   // threads that add up
+inline constexpr int sumBlocks = 1024;     // at most; their sums are added by one more block
+
+template <class Pass> __global__ void __launch_bounds__(blockSize) runPass(int n, Pass pass) {
+    const int i = int(blockIdx.x * blockDim.x + threadIdx.x);
+    if (i < n) pass(i);
+}
+
+// sums[block] = what reduction.addTo adds for the i of this block.
+template <class Value, class Reduction>
+__global__ void __launch_bounds__(sumBlockSize) addUp(int n, Reduction reduction, Value* sums) {
+    __shared__ __align__(16) unsigned char memory[sizeof(Value) * sumBlockSize];
+    Value* parts = reinterpret_cast<Value*>(memory);
+    const int thread = int(threadIdx.x);
+    Value sum;
+    for (int i = int(blockIdx.x) * sumBlockSize + thread; i < n; i += int(gridDim.x) * sumBlockSize) reduction.addTo(sum, i);
+    new (parts + thread) Value(sum);
+    for (int half = sumBlockSize / 2; half > 0; half /= 2) {
+        __syncthreads();
+        if (thread < half) parts[thread].add(parts[thread + half]);
+    }
+    if (thread == 0) sums[blockIdx.x] = parts[0];
+}
+template <class Value> struct AddParts {
+    const Value* parts;
+    __device__ void addTo(Value& sum, int i) const { sum.add(parts[i]); }
+};
+
+template <class Pass> __global__ void __launch_bounds__(blockSize) countBins(int n, Pass pass, int* counts) {
+    __shared__ int own[Pass::bins];
+    for (int b = int(threadIdx.x); b < Pass::bins; b += blockSize) own[b] = 0;
+    __syncthreads();
+    for (int i = int(blockIdx.x) * blockSize + int(threadIdx.x); i < n; i += int(gridDim.x) * blockSize)
+        if (const int bin = pass.bin(i); bin >= 0) atomicAdd(&own[bin], 1);
+    __syncthreads();
+    for (int b = int(threadIdx.x); b < Pass::bins; b += blockSize)
+        if (own[b] > 0) atomicAdd(&counts[b], own[b]);
+}
+
+}  // namespace cudaKernels
+
+// A stretch of work on the GPU, recorded once and run again as a whole.
+class CudaRecording {
+public:
+    CudaRecording() = default;
+    ~CudaRecording();
+    CudaRecording(const CudaRecording&) = delete;
+    CudaRecording& operator=(const CudaRecording&) = delete;
+    // What was recorded no longer holds: constants, plan or buffers have changed.
+    void outdate() { current_ = false; }
+
+private:
+    friend class Cuda;
+    cudaGraphExec_t graph_ = nullptr;
+    bool current_ = false;
+};
+
+class Cuda {
+public:
+    // Throws Error (NoDevice) with what cudaProblem(index) says.
+    explicit Cuda(int index);
+    ~Cuda();
+    Cuda(Cuda&& other) noexcept;
+    Cuda& operator=(Cuda&&) = delete;
+
+    int index() const { return index_; }
+    int64_t bytes() const { return bytes_; }   // held by buffers
+
+    // Zeroed memory. Throws Error (Memory).
+    template <class T> T* allocate(size_t n) { return static_cast<T*>(allocateBytes(n * sizeof(T))); }
+    void release(void* p, size_t bytes);
+    template <class T> void upload(T* to, const T* from, size_t n) { copy(to, from, n * sizeof(T), cudaMemcpyHostToDevice); }
+    template <class T> void download(T* to, const T* from, size_t n) const {
+        copy(to, from, n * sizeof(T), cudaMemcpyDeviceToHost);
+    }
+
+    // Runs a pass over [0, n), one particle a thread.
+    template <class Pass> void forEach(int n, const Pass& pass) {
+        if (n > 0) launch(cudaKernels::runPass<Pass>, blocksFor(n), cudaKernels::blockSize, n, pass);
+    }
+
+    // *out = the sum (Value::add) of what reduction.addTo adds for i in [0, n); `out` is memory of the device.
+    template <class Value, class Reduction> void reduce(int n, const Reduction& reduction, Value* out) {
+        using namespace cudaKernels;
+        static_assert(sizeof(Value) * (sumBlocks + 1) <= scratchBytes);
+        Value* parts = static_cast<Value*>(scratch_);
+        const int blocks = std::max(1, std::min(sumBlocks, (n + sumBlockSize - 1) / sumBlockSize));
+        launch(addUp<Value, Reduction>, blocks, sumBlockSize, n, reduction, parts);
+        launch(addUp<Value, AddParts<Value>>, 1, sumBlockSize, blocks, AddParts<Value>{parts}, out);
+    }
+    // The same, for the host to read.
+    template <class Value, class Reduction> Value sum(int n, const Reduction& reduction) {
+        Value* out = static_cast<Value*>(scratch_) + cudaKernels::sumBlocks;
+        reduce(n, reduction, out);
+        Value value;
+        download(&value, out, 1);
+        return value;
+    }
+
+    // How many i in [0, n) fall into each bin: pass.bin(i) in [0, Pass::bins), or -1 for none.
+    template <class Pass> std::vector<int> histogram(int n, const Pass& pass) {
+        static_assert(Pass::bins * sizeof(int) <= scratchBytes);
+        int* counts = static_cast<int*>(scratch_);
+        clear(counts, Pass::bins * sizeof(int));
+        if (n > 0) launch(cudaKernels::countBins<Pass>, std::min(blocksFor(n), 256), cudaKernels::blockSize, n, pass, counts);
+        std::vector<int> host(Pass::bins);
+        download(host.data(), counts, host.size());
+        return host;
+    }
+
+    // As Omp::sortByCell, without padding (pad 1) and without items to drop: returns n.
+    int sortByCell(int n, const int* key, int rows, int rowLength, int pad, int* cellStart, Buffer<int, Cuda>& order);
+
+    // Steps are recorded as CUDA graphs. `f` launches work and reads nothing; it is not run, it is noted and then run.
+    static constexpr bool recordsSteps = true;
+    using Recording = CudaRecording;
+    bool replay(Recording&);   // false: nothing was done, the recording doesn't hold
+    template <class F> void record(Recording& recording, const F& f) {
+        beginRecording();
+        try {
+            f();
+        } catch (...) {
+            abandonRecording();
+            throw;
+        }
+        endRecording(recording);
+    }
+
+    // Measures f() by events; what they say is added to `time` by collectTimes(), which waits.
+    template <class F> void timed(PassTime* time, const F& f) {
+        const cudaEvent_t begin = mark();
+        f();
+        spans_.push_back({begin, mark(), time});
+    }
+    void collectTimes();
+    // The ms that each of `count` calls took.
+    template <class F> std::vector<double> timeEach(int count, const F& f) {
+        std::vector<cudaEvent_t> events = {mark()};
+        for (int k = 0; k < count; ++k) {
+            f();
+            events.push_back(mark());
+        }
+        return intervals(events);
+    }
+    void wait() const;
+
+private:
+    static constexpr size_t scratchBytes = 256 << 10;
+    struct Span { cudaEvent_t begin, end; PassTime* time; };
+
+    static int blocksFor(int n) { return (n + cudaKernels::blockSize - 1) / cudaKernels::blockSize; }
+    template <class... Parameters, class... Arguments>
+    void launch(void (*kernel)(Parameters...), int blocks, int threads, Arguments&&... arguments) {
+        activate();
+        cudaLaunchConfig_t config{};
+        config.gridDim = dim3(unsigned(blocks));
+        config.blockDim = dim3(unsigned(threads));
+        config.stream = stream_;
+        requireCuda(cudaLaunchKernelEx(&config, kernel, std::forward<Arguments>(arguments)...), "starting a kernel");
+    }
+    void activate() const;   // CUDA calls go to the device that the calling thread chose last
+    void* allocateBytes(size_t bytes);
+    void copy(void* to, const void* from, size_t bytes, cudaMemcpyKind) const;
+    void clear(void* memory, size_t bytes);
+
+    void beginRecording();
+    void abandonRecording();
+    void endRecording(Recording&);
+    cudaEvent_t mark();
+    std::vector<double> intervals(const std::vector<cudaEvent_t>&);
+
+    int index_;
+    cudaStream_t stream_ = nullptr;
+    void* scratch_ = nullptr;      // for partial sums
+    void* sortSpace_ = nullptr;
+    size_t sortSpaceBytes_ = 0;
+    int64_t bytes_ = 0;
+    bool recording_ = false;
+    std::vector<Span> spans_;
+    std::vector<cudaEvent_t> idle_;   // events to be used again
+};
+
+}  // namespace spindrift

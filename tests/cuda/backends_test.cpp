@@ -1,0 +1,195 @@
+// A run on the GPU is the run on the CPU: step by step to rounding, after hundreds of steps in its sums, and bit by bit
+// when a run moves from one to the other.
+#include "core/error.h"
+#include "cuda/gpu.h"
+#include "sim/make_simulation.h"
+
+#include <random>
+
+namespace spindrift {
+namespace {
+
+const char* const Scenes[] = {"1.json", "2.json", "3.json", "dam_break.json", "double_dam_break.json", "ball_drop.json",
+                              "pool_drop.json", "still_pool.json", "test/dam_break_small.json",
+                              "test/historical_small.json"};
+
+std::unique_ptr<Simulation> onCpu(const Scene& s, const RunState& from) { return makeSimdSimulation(s, from, 2); }
+std::unique_ptr<Simulation> onGpu(const Scene& s, const RunState& from) { return makeCudaSimulation(s, from, 0); }
+
+void expectSameBits(const RunState& a, const RunState& b) {
+    EXPECT_EQ(a.particles.positions, b.particles.positions);
+    EXPECT_EQ(a.particles.velocities, b.particles.velocities);
+    EXPECT_EQ(a.particles.walls, b.particles.walls);
+    EXPECT_EQ(a.clock.time, b.clock.time);
+    EXPECT_EQ(a.clock.dt, b.clock.dt);
+    EXPECT_EQ(a.clock.steps, b.clock.steps);
+    EXPECT_EQ(a.start.low, b.start.low);
+    EXPECT_EQ(a.start.speed, b.start.speed);
+}
+
+// Largest differences of two runs: positions in support radii, densities in rest densities, pressures in rho0 c^2, which is
+// the scale that the equation of state multiplies rounding errors of density with.
+struct Difference { double position = 0, density = 0, pressure = 0; };
+Difference difference(const Scene& scene, Simulation& a, Simulation& b) {
+    const std::vector<Particle> p = a.particles(), q = b.particles();
+    double stiffness = 0;
+    for (const Particle& one : p) {
+        const double ratio = one.density / scene.fluid.restDensity;
+        const int gamma = scene.fluid.equationOfState == EquationOfState::Linear ? 1 : scene.fluid.gamma;
+        if (one.pressure > 0 && ratio > 1.0005)
+            stiffness = std::max(stiffness, gamma * one.pressure / (std::pow(ratio, gamma) - 1));
+    }
+    Difference d;
+    for (size_t i = 0; i < p.size(); ++i) {
+        d.position = std::max(d.position, length(p[i].position - q[i].position) / supportRadius(scene));
+        d.density = std::max(d.density, std::abs(p[i].density - q[i].density) / scene.fluid.restDensity);
+        if (stiffness > 0) d.pressure = std::max(d.pressure, std::abs(p[i].pressure - q[i].pressure) / stiffness);
+    }
+    return d;
+}
+
+class Backends : public testing::TestWithParam<const char*> {};
+
+TEST_P(Backends, OneStepFromTheSameStateAgreesToRounding) {
+    NEED_GPU();
+    const Scene scene = shippedScene(GetParam());
+    auto before = onCpu(scene, placeParticles(scene));
+    before->step(40);   // no longer a lattice
+    const RunState state = before->state();
+    auto cpu = onCpu(scene, state), gpu = onGpu(scene, state);
+    cpu->step(), gpu->step();
+    const Difference d = difference(scene, *cpu, *gpu);
+    EXPECT_LT(d.position, 1e-5);
+    EXPECT_LT(d.density, 1e-5);
+    EXPECT_LT(d.pressure, 1e-5);
+    EXPECT_NEAR(cpu->measure().dt, gpu->measure().dt, 1e-5 * cpu->measure().dt);
+    EXPECT_GT(gpu->measure().time, state.clock.time);
+}
+
+TEST_P(Backends, SumsAgreeAfterThreeHundredSteps) {
+    NEED_GPU();
+    const Scene scene = shippedScene(GetParam());
+    auto cpu = onCpu(scene, placeParticles(scene)), gpu = onGpu(scene, placeParticles(scene));
+    cpu->step(300), gpu->step(300);
+    const Measurement a = cpu->measure(), b = gpu->measure();
+    const double energy = a.kineticEnergy + a.potentialEnergy, height = scene.domain.max.y - scene.domain.min.y;
+    EXPECT_EQ(b.steps, 300);
+    EXPECT_NEAR(b.time, a.time, 0.01 * a.time);
+    EXPECT_NEAR(b.kineticEnergy + b.potentialEnergy, energy, 0.01 * std::abs(energy));
+    EXPECT_LT(length(b.centerOfMass - a.centerOfMass), 0.01 * height);
+    EXPECT_NEAR(b.densityError, a.densityError, 0.01 * a.densityError + 1e-5);
+}
+
+TEST_P(Backends, TwoRunsAreTheSameBits) {
+    NEED_GPU();
+    const Scene scene = shippedScene(GetParam());
+    auto one = onGpu(scene, placeParticles(scene)), two = onGpu(scene, placeParticles(scene));
+    one->step(50);
+    for (int k = 0; k < 50; ++k) {   // looking on must not change anything
+        two->step();
+        if (k % 10 == 0) two->measure(), two->resetTimes();
+    }
+    expectSameBits(one->state(), two->state());
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Backends, testing::ValuesIn(Scenes));
+
+TEST(Switching, KeepsEveryBitHundredTimes) {
+    NEED_GPU();
+    const Scene scene = testScene("dam_break_small.json");
+    auto simulation = onCpu(scene, placeParticles(scene));
+    for (int k = 0; k < 100; ++k) {
+        simulation->step(k % 4);
+        const RunState before = simulation->state();
+        simulation = k % 2 ? onCpu(scene, before) : onGpu(scene, before);
+        expectSameBits(simulation->state(), before);
+        EXPECT_EQ(simulation->cudaDevice(), k % 2 ? hostMemory : 0);
+    }
+    EXPECT_EQ(simulation->measure().steps, 150);
+    EXPECT_TRUE(simulation->measure().finite);
+}
+
+// Whatever is asked, in whatever order: a recording that no longer holds must never run.
+TEST(Recordings, NeverGoStale) {
+    NEED_GPU();
+    const Scene first = testScene("dam_break_small.json");
+    for (unsigned seed : {1u, 2u, 3u}) {
+        Scene scene = first;
+        auto cpu = onCpu(scene, placeParticles(scene)), gpu = onGpu(scene, placeParticles(scene));
+        std::mt19937 random(seed);
+        std::vector<Vertex> vertices(size_t(gpu->fluidCount()) + size_t(gpu->wallCount()));
+        for (int k = 0; k < 40; ++k) {
+            switch (random() % 8) {
+                case 0: scene.simulation.gravity.x = 0.1f * float(random() % 100); break;
+                case 1: scene.fluid.viscosity = random() % 2 ? 0.0f : 0.5f; break;
+                case 2: scene.fluid.artificialViscosity = random() % 2 ? 0.0f : 0.1f; break;
+                case 3: scene.time.mode = random() % 2 ? TimeMode::Cfl : TimeMode::Fixed; scene.time.step = 2e-4f; break;
+                case 4: {
+                    const Stir stir{{0.2f, 0.1f, 0.1f}, random() % 2 ? 0.0f : 0.2f, {1, float(k % 3), 0}};
+                    cpu->stir(stir), gpu->stir(stir);
+                    break;
+                }
+                case 5: gpu->writeVertices({vertices.data()}, ColorBy::Pressure, k % 2); break;
+                case 6: gpu->resetTimes(); break;
+                case 7: gpu->measure(), gpu->times(); break;
+            }
+            cpu->apply(scene), gpu->apply(scene);
+            const int steps = int(random() % 4);
+            cpu->step(steps), gpu->step(steps);
+        }
+        EXPECT_LT(difference(scene, *cpu, *gpu).position, 1e-2) << "seed " << seed;
+        EXPECT_NEAR(cpu->measure().time, gpu->measure().time, 1e-4 * cpu->measure().time);
+        EXPECT_NEAR(cpu->measure().kineticEnergy, gpu->measure().kineticEnergy, 1e-3 * cpu->measure().kineticEnergy);
+    }
+}
+
+TEST(Gpu, MemoryPerParticleOfTheDefaultScene) {
+    NEED_GPU();
+    const Scene scene = shippedScene("dam_break.json", 20000);
+    const auto gpu = onGpu(scene, placeParticles(scene));
+    const double each = double(gpu->bytes()) / (gpu->fluidCount() + gpu->wallCount());
+    EXPECT_LE(each, 160);
+    EXPECT_GT(each, 60);
+    EXPECT_LE(gpu->bytes(), estimateGpuMemory(scene));
+    EXPECT_GT(gpu->bytes(), estimateGpuMemory(scene) / 100);
+}
+
+TEST(Gpu, OneParticleIsWhatAllSay) {
+    NEED_GPU();
+    const Scene scene = testScene("ball_drop_small.json");
+    const auto gpu = onGpu(scene, placeParticles(scene));
+    gpu->step(7);
+    const std::vector<Particle> all = gpu->particles();
+    for (int id : {0, 3, gpu->fluidCount() - 1}) {
+        EXPECT_EQ(gpu->particle(id).position, all[size_t(id)].position);
+        EXPECT_EQ(gpu->particle(id).density, all[size_t(id)].density);
+    }
+    EXPECT_EQ(gpu->timeSteps(5).size(), 5u);
+    EXPECT_EQ(gpu->measure().steps, 12);
+    for (const PassTime& t : gpu->times()) EXPECT_EQ(t.runs, 1) << t.name;
+}
+
+TEST(Gpu, TooLargeASceneIsRefusedAndLeavesTheOldRunAlone) {
+    NEED_GPU();
+    Scene scene = testScene("dam_break_small.json");
+    scene.compute.backend = Backend::Cuda;
+    const auto running = makeSimulation(scene);
+    running->step(3);
+    Scene huge = scene;
+    huge.domain.max = {40, 40, 40};
+    huge.fluid.bodies = {Body{.max{40, 40, 40}}};
+    huge.simulation.spacing = emulated ? 0.14f : 0.018f;   // 23 million, 11 thousand million
+    try {
+        makeSimulation(huge);
+        FAIL() << "was not refused";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.exit, Exit::Memory);
+        EXPECT_NE(std::string(error.what()).find("GPU memory"), std::string::npos) << error.what();
+    }
+    running->step(3);
+    EXPECT_EQ(running->measure().steps, 6);
+    EXPECT_TRUE(running->measure().finite);
+}
+
+}  // namespace
+}  // namespace spindrift

@@ -1,0 +1,150 @@
+// Loops, sums, bins and the sort give on a GPU what they give on the host.
+#define SPINDRIFT_REAL float
+#define LANES deviceTest
+#include "cuda/gpu.h"
+#include "device/cuda.h"
+#include "device/omp.h"
+#include "sim/make_simulation.h"
+#include "sim/passes.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <random>
+
+namespace spindrift::deviceTest {
+
+struct Square {
+    const int* in;
+    int* out;
+    HD void operator()(int i) const { out[i] = in[i] * in[i]; }
+};
+struct Sums {
+    double sum = 0;
+    int largest = -1;
+    HD void add(const Sums& o) {
+        sum += o.sum;
+        largest = o.largest > largest ? o.largest : largest;
+    }
+};
+struct AddNumbers {
+    const int* in;
+    HD void addTo(Sums& s, int i) const { s.add({1.0 / (1 + in[i]), in[i]}); }
+};
+struct LastDigit {
+    static constexpr int bins = 10;
+    const int* in;
+    HD int bin(int i) const { return in[i] % 13 == 0 ? -1 : in[i] % 10; }
+};
+
+std::vector<int> randomNumbers(int n, int below) {
+    std::mt19937 random(5);
+    std::vector<int> numbers(n);
+    for (int& x : numbers) x = int(random() % unsigned(below));
+    return numbers;
+}
+
+template <class Device> class Devices : public testing::Test {
+protected:
+    void SetUp() override {
+        if constexpr (std::is_same_v<Device, Cuda>) NEED_GPU();
+    }
+    static Device make() {
+        if constexpr (std::is_same_v<Device, Cuda>) return Cuda(0);
+        else return Omp(2);
+    }
+    template <class T> static std::vector<T> fetch(Device& device, const Buffer<T, Device>& buffer) {
+        std::vector<T> host(buffer.size());
+        device.download(host.data(), buffer.data(), host.size());
+        return host;
+    }
+    template <class T> static void put(Device& device, Buffer<T, Device>& buffer, const std::vector<T>& host) {
+        buffer.resize(host.size());
+        device.upload(buffer.data(), host.data(), host.size());
+    }
+};
+using Both = testing::Types<Omp, Cuda>;
+TYPED_TEST_SUITE(Devices, Both);
+
+TYPED_TEST(Devices, LoopReachesEverybody) {
+    for (int n : {1, 127, 128, 129, 5000}) {
+        TypeParam device = this->make();
+        Buffer<int, TypeParam> in(device), out(device);
+        const std::vector<int> numbers = randomNumbers(n, 1000);
+        this->put(device, in, numbers);
+        out.resize(n);
+        device.forEach(n, Square{in.data(), out.data()});
+        const std::vector<int> squares = this->fetch(device, out);
+        for (int i = 0; i < n; ++i) ASSERT_EQ(squares[i], numbers[i] * numbers[i]) << i << " of " << n;
+    }
+}
+
+TYPED_TEST(Devices, SumsAndExtremesOfAnyNumber) {
+    for (int n : {0, 1, 127, 129, 20000}) {
+        TypeParam device = this->make();
+        Buffer<int, TypeParam> in(device);
+        const std::vector<int> numbers = randomNumbers(n, 100000);
+        this->put(device, in, numbers);
+        const Sums sums = device.template sum<Sums>(n, AddNumbers{in.data()});
+        Sums expected;
+        for (int x : numbers) expected.add({1.0 / (1 + x), x});
+        EXPECT_NEAR(sums.sum, expected.sum, 1e-12 * n);
+        EXPECT_EQ(sums.largest, expected.largest);
+    }
+}
+
+TYPED_TEST(Devices, BinsAreCounted) {
+    for (int n : {0, 1, 40000}) {
+        TypeParam device = this->make();
+        Buffer<int, TypeParam> in(device);
+        const std::vector<int> numbers = randomNumbers(n, 1000);
+        this->put(device, in, numbers);
+        std::vector<int> expected(10);
+        for (int x : numbers)
+            if (x % 13 != 0) ++expected[x % 10];
+        EXPECT_EQ(device.histogram(n, LastDigit{in.data()}), expected);
+    }
+}
+
+TYPED_TEST(Devices, SortIsStable) {
+    const int rows = 40, rowLength = 9;
+    for (int n : {0, 1, 300, 20000}) {
+        TypeParam device = this->make();
+        Buffer<int, TypeParam> key(device), cellStart(device), order(device);
+        const std::vector<int> keys = randomNumbers(n, rows * rowLength);
+        this->put(device, key, keys);
+        cellStart.resize(rows * rowLength + 1);
+        ASSERT_EQ(device.sortByCell(n, key.data(), rows, rowLength, 1, cellStart.data(), order), n);
+        std::vector<int> expected(n);
+        std::iota(expected.begin(), expected.end(), 0);
+        std::stable_sort(expected.begin(), expected.end(), [&](int a, int b) { return keys[a] < keys[b]; });
+        EXPECT_EQ(this->fetch(device, order), expected);
+        const std::vector<int> starts = this->fetch(device, cellStart);
+        for (int c = 0; c <= rows * rowLength; ++c)
+            ASSERT_EQ(starts[c], std::count_if(keys.begin(), keys.end(), [&](int k) { return k < c; })) << c;
+    }
+}
+
+TEST(CudaVertices, DeviceMemoryAndHostGetTheSame) {
+    NEED_GPU();
+    const Scene scene = testScene("ball_drop_small.json");
+    const auto simulation = makeCudaSimulation(scene, placeParticles(scene), 0);
+    simulation->step(5);
+    for (bool walls : {false, true}) {
+        const size_t n = size_t(simulation->fluidCount()) + (walls ? size_t(simulation->wallCount()) : 0);
+        Cuda device(0);
+        Buffer<Vertex, Cuda> own(device);
+        own.resize(n);
+        device.wait();   // the simulation works on another stream
+        std::vector<Vertex> direct(n), copied(n);
+        const Range a = simulation->writeVertices({own.data(), 0}, ColorBy::Velocity, walls);
+        device.download(direct.data(), own.data(), n);
+        const Range b = simulation->writeVertices({copied.data()}, ColorBy::Velocity, walls);
+        EXPECT_EQ(std::memcmp(direct.data(), copied.data(), n * sizeof(Vertex)), 0);
+        EXPECT_EQ(a.min, b.min);
+        EXPECT_EQ(a.max, b.max);
+        EXPECT_GT(b.max, 0.01f);
+    }
+}
+
+}  // namespace spindrift::deviceTest

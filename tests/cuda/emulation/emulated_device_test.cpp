@@ -1,0 +1,2 @@
+// Loops, sums, bins and the sort of the emulated GPU.
+#include "cuda/device_test.cu"

@@ -1,0 +1,2 @@
+// Density and forces on the emulated GPU, against the sum over all pairs.
+#include "unit/sim/neighbours_test.cpp"

@@ -1,0 +1,253 @@
+#include "emulation.h"
+
+#include <sys/mman.h>
+#include <ucontext.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <memory>
+#include <vector>
+
+using Work = std::function<void()>;
+struct EmulatedGraph { std::vector<Work> work; };
+struct EmulatedGraphExec { std::vector<Work> work; };
+struct EmulatedStream { std::vector<Work> queue; std::unique_ptr<EmulatedGraph> recording; };
+struct EmulatedEvent { std::chrono::steady_clock::time_point time; };
+
+dim3 threadIdx, blockIdx, blockDim, gridDim;
+
+namespace emulation {
+namespace {
+
+[[noreturn]] void die(const char* why) {
+    std::fprintf(stderr, "emulated GPU: %s\n", why);
+    std::abort();
+}
+
+// --- memory: pages that are closed to the host, with a closed page behind ---
+
+constexpr size_t page = 4096;
+struct Region { char* pages; size_t bytes; };
+std::map<void*, Region> regions;
+size_t used = 0;
+
+void protect(int how) {
+    for (const auto& [p, r] : regions) mprotect(r.pages, r.bytes, how);
+}
+
+// --- threads of a block: fibres that switch at barriers ---
+
+constexpr size_t stackBytes = 256 << 10;
+struct Fibre {
+    ucontext_t context{};
+    std::unique_ptr<char[]> stack{new char[stackBytes]};
+    bool done = true, waits = false;
+};
+std::vector<std::unique_ptr<Fibre>> fibres;
+ucontext_t scheduler;
+Fibre* running = nullptr;
+const Work* body = nullptr;
+
+void runFibre() {
+    (*body)();
+    running->done = true;
+    swapcontext(&running->context, &scheduler);
+}
+void resume(unsigned thread) {
+    threadIdx.x = thread;
+    running = fibres[thread].get();
+    running->waits = false;
+    swapcontext(&scheduler, &running->context);
+    running = nullptr;
+}
+void start(unsigned thread) {
+    Fibre& f = *fibres[thread];
+    f.done = false;
+    getcontext(&f.context);
+    f.context.uc_stack.ss_sp = f.stack.get();
+    f.context.uc_stack.ss_size = stackBytes;
+    f.context.uc_link = &scheduler;
+    makecontext(&f.context, runFibre, 0);
+    resume(thread);
+}
+
+unsigned inOrder(unsigned k, unsigned n) { return machine.reversed ? n - 1 - k : k; }
+
+void runBlock(unsigned threads) {
+    while (fibres.size() < threads) fibres.push_back(std::make_unique<Fibre>());
+    start(inOrder(0, threads));
+    if (fibres[inOrder(0, threads)]->done) {   // no barriers in this kernel: fibres would only cost time
+        for (unsigned k = 1; k < threads; ++k) {
+            threadIdx.x = inOrder(k, threads);
+            (*body)();
+        }
+        return;
+    }
+    for (unsigned k = 1; k < threads; ++k) start(inOrder(k, threads));
+    for (bool again = true; again;) {
+        unsigned waiting = 0;
+        for (unsigned t = 0; t < threads; ++t) waiting += fibres[t]->waits && !fibres[t]->done;
+        if (waiting != 0 && waiting != threads) die("a barrier that not all threads of the block reach");
+        again = waiting > 0;
+        for (unsigned k = 0; again && k < threads; ++k) resume(inOrder(k, threads));
+    }
+}
+
+cudaError_t alive() { return machine.lost ? cudaErrorIllegalAddress : cudaSuccess; }
+
+void drain(EmulatedStream* s) {
+    protect(PROT_READ | PROT_WRITE);
+    for (const Work& w : std::exchange(s->queue, {})) w();
+    protect(PROT_NONE);
+}
+std::vector<EmulatedStream*> streams;
+
+}  // namespace
+
+cudaError_t codeForDevice() { return machine.codeFits ? cudaSuccess : cudaErrorNoKernelImageForDevice; }
+
+cudaError_t enqueue(cudaStream_t s, Work work) {
+    if (machine.lost) return alive();
+    (s->recording ? s->recording->work : s->queue).push_back(std::move(work));
+    return cudaSuccess;
+}
+
+void runGrid(dim3 grid, dim3 block, const Work& thread) {
+    ++counts.kernels;
+    body = &thread;
+    gridDim = grid;
+    blockDim = block;
+    for (unsigned b = 0; b < grid.x; ++b) {
+        blockIdx.x = inOrder(b, grid.x);
+        runBlock(block.x);
+    }
+}
+
+}  // namespace emulation
+
+using namespace emulation;
+
+void __syncthreads() {
+    if (!running) die("a barrier that the first thread did not reach");
+    running->waits = true;
+    swapcontext(&running->context, &scheduler);
+}
+
+cudaError_t cudaGetDeviceCount(int* n) {
+    if (machine.driver < 13000) return cudaErrorInsufficientDriver;
+    *n = machine.devices;
+    return machine.devices > 0 ? cudaSuccess : cudaErrorNoDevice;
+}
+cudaError_t cudaDriverGetVersion(int* v) { return *v = machine.driver, cudaSuccess; }
+cudaError_t cudaRuntimeGetVersion(int* v) { return *v = 13000, cudaSuccess; }
+cudaError_t cudaGetDeviceProperties(cudaDeviceProp* p, int) {
+    *p = {"emulated GPU", 9, 0};
+    return alive();
+}
+cudaError_t cudaSetDevice(int d) { return d < machine.devices ? cudaSuccess : cudaErrorInvalidDevice; }
+cudaError_t cudaMemGetInfo(size_t* free, size_t* all) {
+    *all = machine.memory;
+    *free = machine.memory - std::min(used, machine.memory);
+    return alive();
+}
+cudaError_t cudaGetLastError() { return alive(); }
+const char* cudaGetErrorString(cudaError_t e) {
+    switch (e) {
+        case cudaErrorMemoryAllocation: return "out of memory";
+        case cudaErrorInsufficientDriver: return "CUDA driver version is insufficient for CUDA runtime version";
+        case cudaErrorNoDevice: return "no CUDA-capable device is detected";
+        case cudaErrorNoKernelImageForDevice: return "no kernel image is available for execution on the device";
+        case cudaErrorIllegalAddress: return "an illegal memory access was encountered";
+        default: return "another error";
+    }
+}
+
+cudaError_t cudaMalloc(void** p, size_t bytes) {
+    if (machine.lost) return alive();
+    for (EmulatedStream* s : streams)
+        if (s->recording) return cudaErrorStreamCaptureUnsupported;
+    if (used + bytes > machine.memory) return cudaErrorMemoryAllocation;
+    const size_t pages = (bytes + page - 1) / page * page + page;
+    char* memory = static_cast<char*>(mmap(nullptr, pages, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0));
+    if (memory == MAP_FAILED) return cudaErrorMemoryAllocation;
+    mprotect(memory + pages - page, page, PROT_NONE);
+    std::memset(memory, 0xff, pages - page);   // NaN as a number
+    *p = memory + (pages - page - bytes) / 16 * 16;
+    mprotect(memory, pages - page, PROT_NONE);
+    regions[*p] = {memory, pages - page};
+    used += bytes;
+    ++counts.allocations;
+    return cudaSuccess;
+}
+cudaError_t cudaFree(void* p) {
+    if (!p) return cudaSuccess;
+    for (EmulatedStream* s : streams) drain(s);
+    const auto found = regions.find(p);
+    if (found == regions.end()) die("memory is freed that was not allocated");
+    munmap(found->second.pages, found->second.bytes + page);
+    used -= std::min(used, found->second.bytes);
+    regions.erase(found);
+    return alive();
+}
+cudaError_t cudaMemcpyAsync(void* to, const void* from, size_t bytes, cudaMemcpyKind, cudaStream_t s) {
+    return enqueue(s, [=] { std::memcpy(to, from, bytes); });
+}
+cudaError_t cudaMemsetAsync(void* p, int value, size_t bytes, cudaStream_t s) {
+    return enqueue(s, [=] { std::memset(p, value, bytes); });
+}
+
+cudaError_t cudaStreamCreateWithFlags(cudaStream_t* s, unsigned) {
+    streams.push_back(*s = new EmulatedStream);
+    return alive();
+}
+cudaError_t cudaStreamDestroy(cudaStream_t s) {
+    std::erase(streams, s);
+    delete s;
+    return cudaSuccess;
+}
+cudaError_t cudaStreamSynchronize(cudaStream_t s) {
+    if (s->recording) return cudaErrorStreamCaptureUnsupported;
+    if (!machine.lost) drain(s);
+    return alive();
+}
+cudaError_t cudaStreamBeginCapture(cudaStream_t s, cudaStreamCaptureMode) {
+    s->recording = std::make_unique<EmulatedGraph>();
+    ++counts.recordings;
+    return alive();
+}
+cudaError_t cudaStreamEndCapture(cudaStream_t s, cudaGraph_t* g) {
+    *g = s->recording.release();
+    return alive();
+}
+cudaError_t cudaGraphDestroy(cudaGraph_t g) { return delete g, cudaSuccess; }
+cudaError_t cudaGraphInstantiate(cudaGraphExec_t* e, cudaGraph_t g, unsigned long long) {
+    ++counts.instantiations;
+    *e = new EmulatedGraphExec{g->work};
+    return cudaSuccess;
+}
+// As the real one: nodes may change, their number may not.
+cudaError_t cudaGraphExecUpdate(cudaGraphExec_t e, cudaGraph_t g, cudaGraphExecUpdateResultInfo*) {
+    if (e->work.size() != g->work.size()) return cudaErrorGraphExecUpdateFailure;
+    e->work = g->work;
+    return cudaSuccess;
+}
+cudaError_t cudaGraphExecDestroy(cudaGraphExec_t e) { return delete e, cudaSuccess; }
+cudaError_t cudaGraphLaunch(cudaGraphExec_t e, cudaStream_t s) {
+    ++counts.replays;
+    if (machine.lost) return alive();
+    s->queue.insert(s->queue.end(), e->work.begin(), e->work.end());
+    return cudaSuccess;
+}
+
+cudaError_t cudaEventCreate(cudaEvent_t* e) { return *e = new EmulatedEvent, cudaSuccess; }
+cudaError_t cudaEventRecord(cudaEvent_t e, cudaStream_t s) {
+    return enqueue(s, [e] { e->time = std::chrono::steady_clock::now(); });
+}
+cudaError_t cudaEventElapsedTime(float* ms, cudaEvent_t a, cudaEvent_t b) {
+    *ms = std::chrono::duration<float, std::milli>(b->time - a->time).count();
+    return alive();
+}
+cudaError_t cudaEventDestroy(cudaEvent_t e) { return delete e, cudaSuccess; }

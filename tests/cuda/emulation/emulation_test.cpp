@@ -1,0 +1,154 @@
+// What only an emulated GPU can show: failing drivers, lost devices, the order of threads, and what is done how often.
+#include "core/error.h"
+#include "cuda/gpu.h"
+#include "emulation.h"
+#include "sim/make_simulation.h"
+
+#include <algorithm>
+
+namespace spindrift {
+namespace {
+
+class EmulatedGpu : public testing::Test {
+protected:
+    void TearDown() override { emulation::machine = {}; }
+    static std::unique_ptr<Simulation> start(const Scene& s) { return makeCudaSimulation(s, placeParticles(s), 0); }
+    Scene scene = testScene("dam_break_small.json");
+};
+
+void expectError(const Scene& scene, Exit exit, const std::string& words) {
+    try {
+        makeSimulation(scene)->step();
+        FAIL() << "no error: " << words;
+    } catch (const Error& error) {
+        EXPECT_EQ(error.exit, exit) << error.what();
+        EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+        EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+    }
+}
+
+TEST_F(EmulatedGpu, EveryWayToHaveNoGpuIsOneLine) {
+    scene.compute.backend = Backend::Cuda;
+    emulation::machine.driver = 0;
+    expectError(scene, Exit::NoDevice, "no NVIDIA driver");
+    emulation::machine.driver = 12040;
+    expectError(scene, Exit::NoDevice, "knows CUDA 12.4, this program needs 13.0");
+    emulation::machine = {};
+    emulation::machine.devices = 0;
+    expectError(scene, Exit::NoDevice, "no CUDA device");
+    emulation::machine = {};
+    emulation::machine.codeFits = false;
+    expectError(scene, Exit::NoDevice, "SPINDRIFT_CUDA_ARCHITECTURES=90");
+    emulation::machine = {};
+    scene.compute.device = 1;
+    expectError(scene, Exit::NoDevice, "no CUDA device 1; there are 1");
+    scene.compute.device = 0;
+    scene.compute.precision = Precision::Double;
+    expectError(scene, Exit::NoDevice, "double precision");
+}
+
+TEST_F(EmulatedGpu, AutoTakesTheGpuWhenThereIsOne) {
+    EXPECT_EQ(makeSimulation(scene)->deviceName(), "emulated GPU, CUDA, float");
+    emulation::machine.devices = 0;
+    EXPECT_EQ(makeSimulation(scene)->deviceName().substr(0, 3), "CPU");
+    emulation::machine = {};
+    scene.compute.precision = Precision::Double;
+    EXPECT_EQ(makeSimulation(scene)->deviceName().substr(0, 3), "CPU");
+}
+
+TEST_F(EmulatedGpu, ALostDeviceIsOneLineAndNothingHangs) {
+    const auto gpu = start(scene);
+    gpu->step(5);
+    emulation::machine.lost = true;
+    try {
+        gpu->step(), gpu->measure();
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.exit, Exit::DeviceLost);
+        EXPECT_NE(std::string(error.what()).find("the GPU was lost"), std::string::npos) << error.what();
+    }
+}
+
+TEST_F(EmulatedGpu, MemoryThatRunsOutInTheMiddleIsAnError) {
+    for (size_t kib : {60, 260, 300, 400, 500}) {
+        emulation::machine.memory = kib << 10;
+        try {
+            start(scene);
+            FAIL() << kib;
+        } catch (const Error& error) { EXPECT_EQ(error.exit, Exit::Memory) << error.what(); }
+    }
+    emulation::machine = {};
+    EXPECT_NO_THROW(start(scene)->step());
+}
+
+TEST_F(EmulatedGpu, OrderOfThreadsDoesNotMatter) {
+    for (const char* file : {"dam_break_small.json", "historical_small.json"}) {
+        const Scene s = testScene(file);
+        std::vector<RunState> ends;
+        for (bool reversed : {false, true}) {
+            emulation::machine.reversed = reversed;
+            const auto gpu = start(s);
+            gpu->step(20);
+            ends.push_back(gpu->state());
+            ends.back().clock.time = gpu->measure().kineticEnergy;
+        }
+        EXPECT_EQ(ends[0].particles.positions, ends[1].particles.positions) << file;
+        EXPECT_EQ(ends[0].particles.velocities, ends[1].particles.velocities) << file;
+        EXPECT_EQ(ends[0].clock.time, ends[1].clock.time) << file;
+    }
+}
+
+TEST_F(EmulatedGpu, StepsAreRecordedOnceAndAllocateNothing) {
+    const auto gpu = start(scene);
+    gpu->step(1);   // measured pass by pass
+    const emulation::Counts before = emulation::counts;
+    gpu->step(50);
+    gpu->measure();
+    const emulation::Counts after = emulation::counts;
+    EXPECT_EQ(after.recordings - before.recordings, 2) << "one for each side of the buffers";
+    EXPECT_EQ(after.instantiations - before.instantiations, 2);
+    EXPECT_EQ(after.replays - before.replays, 50);
+    EXPECT_EQ(after.allocations, before.allocations);
+    scene.simulation.gravity.x = 1;
+    gpu->apply(scene);
+    gpu->step(50);
+    EXPECT_EQ(emulation::counts.recordings - after.recordings, 2);
+    EXPECT_EQ(emulation::counts.instantiations, after.instantiations) << "the same passes with other constants";
+}
+
+TEST_F(EmulatedGpu, StepsDontWaitForTheHost) {
+    const auto gpu = start(scene);
+    gpu->step(3);
+    gpu->wait();
+    const int64_t before = emulation::counts.kernels;
+    gpu->step(20);
+    EXPECT_EQ(emulation::counts.kernels, before) << "something waited within a step";
+    gpu->wait();
+    EXPECT_GT(emulation::counts.kernels, before + 200);
+}
+
+// The emulation itself: it must notice what it is there to notice.
+using EmulatedGpuDeathTest = EmulatedGpu;
+TEST_F(EmulatedGpuDeathTest, HostCantReadDeviceMemory) {
+    void* memory = nullptr;
+    ASSERT_EQ(cudaMalloc(&memory, 64), cudaSuccess);
+    EXPECT_DEATH(std::printf("%d", *static_cast<volatile int*>(memory)), "");
+    cudaFree(memory);
+}
+TEST_F(EmulatedGpuDeathTest, KernelsCantRunOffTheEnd) {
+    cudaStream_t stream = nullptr;
+    cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking);
+    void* memory = nullptr;
+    ASSERT_EQ(cudaMalloc(&memory, 64), cudaSuccess);
+    EXPECT_DEATH(
+        {
+            emulation::enqueue(stream, [=] { static_cast<volatile int*>(memory)[16] = 1; });
+            cudaStreamSynchronize(stream);
+        },
+        "");
+    cudaFree(memory);
+    cudaStreamDestroy(stream);
+}
+
+}  // namespace
+}  // namespace spindrift

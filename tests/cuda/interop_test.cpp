@@ -1,0 +1,133 @@
+// Vertices that a kernel writes into the GL buffer make the picture that copied vertices make.
+#include "app/frame.h"
+#include "core/error.h"
+#include "cuda/gpu.h"
+#include "render/egl_context.h"
+#include "render/cuda_interop.h"
+#include "sim/make_simulation.h"
+#ifdef SPINDRIFT_EMULATED_GPU
+#include "emulation.h"
+#endif
+
+namespace spindrift {
+namespace {
+
+class Interop : public testing::Test {
+protected:
+    void SetUp() override {
+        NEED_GPU();
+        static EglContext context(0);
+        if (drawingDevice() != 0) GTEST_SKIP() << "skipped: OpenGL (" << glName() << ") draws elsewhere";
+        scene.compute.backend = Backend::Cuda;
+        scene.compute.device = 0;
+        simulation = makeSimulation(scene);
+    }
+    Scene scene = testScene("dam_break_small.json");
+    std::unique_ptr<Simulation> simulation;
+};
+
+// A GPU's run that says it is the CPU's: its vertices go through the host.
+class ThroughHost final : public Simulation {
+public:
+    explicit ThroughHost(Simulation& s) : s_(s) {}
+    int cudaDevice() const override { return hostMemory; }
+    Range writeVertices(VertexMemory out, ColorBy by, bool walls) override {
+        EXPECT_EQ(out.device, hostMemory);
+        return s_.writeVertices(out, by, walls);
+    }
+    void step(int n) override { s_.step(n); }
+    void apply(const Scene& scene) override { s_.apply(scene); }
+    void stir(const Stir& stir) override { s_.stir(stir); }
+    int fluidCount() const override { return s_.fluidCount(); }
+    int wallCount() const override { return s_.wallCount(); }
+    Measurement measure() override { return s_.measure(); }
+    std::vector<Particle> particles() override { return s_.particles(); }
+    Particle particle(int id) override { return s_.particle(id); }
+    RunState state() override { return s_.state(); }
+    std::vector<PassTime> times() override { return s_.times(); }
+    void resetTimes() override { s_.resetTimes(); }
+    std::vector<double> timeSteps(int n) override { return s_.timeSteps(n); }
+    void wait() override { s_.wait(); }
+    std::vector<PlanRow> plan() const override { return s_.plan(); }
+    int64_t bytes() const override { return s_.bytes(); }
+    std::string deviceName() const override { return s_.deviceName(); }
+
+private:
+    Simulation& s_;
+};
+
+TEST_F(Interop, PictureEqualsThatOfTheCopyPixelForPixel) {
+    Frame direct(320, 240, 1);
+    for (ColorBy by : {ColorBy::Velocity, ColorBy::Pressure}) {
+        scene.view.colorBy = by;
+        scene.view.showWalls = by == ColorBy::Pressure;
+        simulation->step(15);
+        direct.update(*simulation, scene);
+        EXPECT_FALSE(direct.copiesVertices());
+        direct.draw(scene);
+        ThroughHost copying(*simulation);
+        Frame copied(320, 240, 1);
+        copied.update(copying, scene);
+        copied.draw(scene);
+        EXPECT_EQ(direct.image(), copied.image());
+    }
+}
+
+TEST_F(Interop, BufferGrowsAndShrinksWithTheScene) {
+    Frame frame(200, 150, 1);
+    for (float spacing : {1.0f, 0.8f, 1.2f, 0.7f}) {
+        Scene other = scene;
+        other.simulation.spacing *= spacing;
+        const auto s = makeSimulation(other);
+        s->step(2);
+        frame.update(*s, other);
+        frame.draw(other);
+        EXPECT_FALSE(frame.copiesVertices());
+    }
+}
+
+#ifdef SPINDRIFT_EMULATED_GPU
+TEST_F(Interop, RegistersOnceAndMapsOncePerFrame) {
+    Frame frame(200, 150, 1);
+    frame.update(*simulation, scene);
+    const emulation::Counts before = emulation::counts;
+    for (int k = 0; k < 10; ++k) {
+        simulation->step();
+        frame.update(*simulation, scene);
+        frame.draw(scene);
+        frame.draw(scene);   // looked at again: nothing is mapped
+    }
+    EXPECT_EQ(emulation::counts.registrations, before.registrations);
+    EXPECT_EQ(emulation::counts.maps - before.maps, 10);
+    scene.view.showWalls = true;   // more vertices
+    frame.update(*simulation, scene);
+    EXPECT_EQ(emulation::counts.registrations, before.registrations + 1);
+}
+
+TEST_F(Interop, WhereGlRunsElsewhereVerticesAreCopied) {
+    emulation::machine.drawsToo = false;
+    Frame frame(200, 150, 1);
+    simulation->step(3);
+    frame.update(*simulation, scene);
+    frame.draw(scene);
+    EXPECT_TRUE(frame.copiesVertices());
+    const Image copied = frame.image();
+    emulation::machine = {};
+    Frame direct(200, 150, 1);
+    direct.update(*simulation, scene);
+    direct.draw(scene);
+    EXPECT_EQ(copied, direct.image());
+}
+
+TEST_F(Interop, ALostDeviceLeavesNothingMapped) {
+    Frame frame(200, 150, 1);
+    frame.update(*simulation, scene);
+    emulation::machine.lost = true;
+    EXPECT_THROW(frame.update(*simulation, scene), Error);
+    EXPECT_NO_THROW(frame.draw(scene));
+    emulation::machine = {};
+}
+#endif
+
+}  // namespace
+}  // namespace spindrift
