@@ -1,5 +1,6 @@
 #include "app/bench.h"
 
+#include "app/gpu_bench.h"
 #include "app/scene_choice.h"
 #include "core/error.h"
 #include "measure/output_file.h"
@@ -12,6 +13,8 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
+#include <tuple>
 #include <vector>
 
 namespace spindrift {
@@ -22,6 +25,8 @@ struct Case {
     std::vector<std::string> knobs;   // path=value
     double original = 0;              // ms a step of the original program on two such cores, 0 = not known
     double warmUp = 0.2;              // s of flow before the clock starts
+    int batches = 9, batch = 20;      // the figure is the median of the batches; a batch is long enough that rebuilding
+                                      // neighbour lists now and then is shared fairly
 };
 
 // The dam break with the spacing that gives about this many particles, and no walls.
@@ -35,7 +40,23 @@ Case damBreak(int64_t particles, const std::string& support, double warmUp, cons
             0, warmUp};
 }
 
-std::vector<Case> allCases() {
+// The default dam break with walls, with about this many particles of fluid.
+Case withWalls(int64_t particles, double warmUp, int batches) {
+    const double spacing = std::cbrt(0.5 * 0.54 * 0.6 / double(particles));
+    return {fmt::format("dam break {}k with walls, R = 2.6 dx", particles / 1000), "dam_break",
+            {fmt::format("simulation.spacing={}", spacing), "compute.backend=cuda"}, 0, warmUp, batches, 1};
+}
+
+// Single steps by events on the GPU. Large scenes are still near their lattice: reaching the splash would take minutes.
+std::vector<Case> gpuCases(int64_t most) {
+    std::vector<Case> cases = {{"historical 3", "3", {"compute.backend=cuda"}, 120, 0.2, 1000, 1}};
+    for (auto [particles, warmUp, steps] : {std::tuple{50'000, 0.2, 1000}, {1'000'000, 0.2, 1000}, {10'000'000, 0.01, 1000},
+                                            {100'000'000, 0.0, 20}})
+        if (particles <= most) cases.push_back(withWalls(particles, warmUp, steps));
+    return cases;
+}
+
+std::vector<Case> cpuCases() {
     std::vector<Case> cases = {{"historical 1", "1", {}, 12.6},
                                {"historical 2", "2", {}, 45},
                                {"historical 3", "3", {}, 120},
@@ -48,6 +69,7 @@ std::vector<Case> allCases() {
     for (int64_t n : {10000, 50000, 200000, 500000, 1000000, 2000000}) {
         cases.push_back(damBreak(n, "2.6", 0, "0"));
         cases.back().name = "size " + cases.back().name;
+        if (n > 300000) cases.back().batch = 3;
     }
     return cases;
 }
@@ -56,33 +78,36 @@ struct Timing {
     std::string device;
     int fluid = 0, walls = 0;
     double ms = 0;                    // a step: median over batches of the batch's mean
+    double bytes = 0;                 // a particle
     std::vector<PassTime> passes;
 };
 
-Timing time(const Case& c, const BenchOptions& options) {
+Scene sceneOf(const Case& c, const BenchOptions& options) {
     std::vector<KnobChoice> choices;
     for (const std::string& knob : c.knobs) {
         const size_t equals = knob.find('=');
         choices.push_back({"bench", knob.substr(0, equals), knob.substr(equals + 1)});
     }
+    if (!options.gpu) choices.push_back({"bench", "compute.backend", "cpu"});
     if (options.threads > 0) choices.push_back({"--threads", "compute.threads", std::to_string(options.threads)});
     if (!options.simd.empty()) choices.push_back({"--simd", "compute.simd", options.simd});
-    auto simulation = makeSimulation(chooseScene(c.scene, choices));
+    return chooseScene(c.scene, choices);
+}
+
+Timing time(const Case& c, const BenchOptions& options) {
+    auto simulation = makeSimulation(sceneOf(c, options));
     simulation->step(3);
     while (simulation->measure().time < c.warmUp) simulation->step(10);
     simulation->resetTimes();
-
-    // A batch is long enough that rebuilding the lists now and then is shared fairly.
-    const int batch = simulation->fluidCount() > 300000 ? 3 : 20, batches = 9;
+    if (options.gpu) simulation->step();   // the one that is measured pass by pass
+    const std::vector<double> steps = simulation->timeSteps(c.batches * c.batch);
     std::vector<double> ms;
-    for (int b = 0; b < batches; ++b) {
-        const auto start = std::chrono::steady_clock::now();
-        simulation->step(batch);
-        ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count() / batch);
-    }
-    std::nth_element(ms.begin(), ms.begin() + batches / 2, ms.end());
-    return {simulation->deviceName(), simulation->fluidCount(), simulation->wallCount(), ms[batches / 2],
-            simulation->times()};
+    for (auto first = steps.begin(); first != steps.end(); first += c.batch)
+        ms.push_back(std::accumulate(first, first + c.batch, 0.0) / c.batch);
+    std::nth_element(ms.begin(), ms.begin() + c.batches / 2, ms.end());
+    const double particles = double(simulation->fluidCount()) + simulation->wallCount();
+    return {simulation->deviceName(), simulation->fluidCount(), simulation->wallCount(), ms[size_t(c.batches) / 2],
+            double(simulation->bytes()) / particles, simulation->times()};
 }
 
 nlohmann::json describe(const Case& c, const Timing& t) {
@@ -90,7 +115,7 @@ nlohmann::json describe(const Case& c, const Timing& t) {
     for (const PassTime& p : t.passes) passes[p.name] = p.ms / double(p.runs);
     nlohmann::json row = {{"case", c.name}, {"device", t.device}, {"particles", t.fluid}, {"boundary", t.walls},
                           {"ms_per_step", t.ms}, {"ns_per_particle_step", 1e6 * t.ms / t.fluid},
-                          {"ms_per_pass", passes}};
+                          {"bytes_per_particle", t.bytes}, {"ms_per_pass", passes}};
     if (c.original > 0) row["times_faster_than_original"] = c.original / t.ms;
     return row;
 }
@@ -108,7 +133,9 @@ void print(const Case& c, const Timing& t) {
 int bench(const BenchOptions& options) {
     if (!options.json.empty()) requireWritable(options.json);
     nlohmann::json rows = nlohmann::json::array();
-    for (const Case& c : allCases()) {
+    if (options.gpu)
+        if (const std::string problem = whyNoGpu(Scene{}); !problem.empty()) throw Error(Exit::NoDevice, "--gpu: " + problem);
+    for (const Case& c : options.gpu ? gpuCases(options.most) : cpuCases()) {
         if (c.name.find(options.only) == std::string::npos) continue;
         const Timing t = time(c, options);
         if (rows.empty())
@@ -117,6 +144,8 @@ int bench(const BenchOptions& options) {
         print(c, t);
         rows.push_back(describe(c, t));
     }
+    if (options.gpu && options.only.empty() && options.most >= 1'000'000)
+        rows.push_back(benchFrameAndSwitch(sceneOf(withWalls(1'000'000, 0, 1), options)));
     if (rows.empty())
         throw Error(Exit::Usage, fmt::format("--only: no case is called \"{}\"; run bench without it to see all", options.only));
     if (!options.json.empty()) writeText(options.json, rows.dump(2) + "\n");

@@ -2,6 +2,7 @@
 
 #include "app/bench.h"
 #include "app/compare.h"
+#include "app/explain.h"
 #include "app/headless.h"
 #include "app/scene_choice.h"
 #include "core/error.h"
@@ -184,6 +185,14 @@ CLI::App* addRun(CLI::App& app, RunOptions& options) {
     return command;
 }
 
+CLI::App* addExplain(CLI::App& app, RunOptions& options) {
+    CLI::App* command = app.add_subcommand(
+        "explain", "what a step of a scene does, skips and costs; with --steps also the time of each pass");
+    command->add_option("scene", options.scene, "scene file, or the name of a shipped scene");
+    addKnobOptions(*command, options.choices);
+    return command;
+}
+
 CLI::App* addCompare(CLI::App& app, CompareOptions& options) {
     CLI::App* command =
         app.add_subcommand("compare", "compares two PNG pictures: SSIM and largest difference");
@@ -207,6 +216,9 @@ CLI::App* addBench(CLI::App& app, BenchOptions& options) {
     command->add_option("--threads", options.threads, "CPU threads; all cores without it")
         ->type_name("N")->check(CLI::Range(1, 4096));
     command->add_option("--simd", options.simd, "avx512, avx2 or sse; the best without it")->type_name("NAME");
+    command->add_flag("--gpu", options.gpu, "the GPU's cases instead: up to 100 million particles, frames, switching");
+    command->add_option("--most", options.most, "leaves out the GPU's cases with more particles")->type_name("N")
+        ->check(CLI::PositiveNumber);
     return command;
 }
 
@@ -232,6 +244,8 @@ int runCommandLine(int argc, const char* const* argv) {
     RunOptions run;
     CompareOptions comparison;
     const CLI::App* runCommand = addRun(app, run);
+    RunOptions explained;
+    const CLI::App* explainCommand = addExplain(app, explained);
     const CLI::App* compareCommand = addCompare(app, comparison);
     BenchOptions benchmark;
     const CLI::App* benchCommand = addBench(app, benchmark);
@@ -247,6 +261,7 @@ int runCommandLine(int argc, const char* const* argv) {
         misuse(fmt::format("{}; `spindrift --help` lists all options", error.what()));
     }
     if (*runCommand) return runScene(run);
+    if (*explainCommand) return explain(chooseScene(explained.scene, explained.choices));
     if (*compareCommand) return compare(comparison);
     if (*benchCommand) return bench(benchmark);
     if (*schemaCommand) writeText("-", jsonSchema());

@@ -8,18 +8,26 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 
 namespace spindrift {
 namespace {
 
 namespace fs = std::filesystem;
+
+// $SPINDRIFT_CONFIGS, or the folder known when the program was built.
+fs::path configs() {
+    const char* folder = std::getenv("SPINDRIFT_CONFIGS");
+    return folder && *folder ? folder : SPINDRIFT_CONFIGS;
+}
+
 }  // namespace
 
 std::vector<std::string> shippedScenes() {
     std::vector<std::string> names;
     std::error_code none;
-    for (const auto& entry : fs::directory_iterator(SPINDRIFT_CONFIGS, none))
+    for (const auto& entry : fs::directory_iterator(configs(), none))
         if (entry.path().extension() == ".json") names.push_back(entry.path().stem().string());
     std::sort(names.begin(), names.end());
     return names;
@@ -28,7 +36,7 @@ std::vector<std::string> shippedScenes() {
 std::string findScene(const std::string& name) {
     std::error_code none;
     if (fs::exists(name, none)) return name;
-    const fs::path shipped = fs::path(SPINDRIFT_CONFIGS) / name;
+    const fs::path shipped = configs() / name;
     for (const fs::path& path : {shipped, fs::path(shipped.string() + ".json")})
         if (fs::is_regular_file(path, none)) return path.string();
     const std::vector<std::string> names = shippedScenes();

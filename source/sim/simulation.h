@@ -13,7 +13,8 @@
 
 namespace spindrift {
 
-// One row of the plan, in the order of the step: a pass that runs, or one that this scene doesn't need and why not.
+// One row of the plan, in the order of the step: a pass or a term of one, "forces: laminar viscosity". It runs, or this scene
+// doesn't need it, and why not.
 struct PlanRow { std::string name, skipped; };
 
 // Where the values of the vertices lie, a few outliers on either side left out (0.5 % each): what a colour scale needs.

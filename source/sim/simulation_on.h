@@ -128,6 +128,7 @@ private:
         plan("wall pressure", &S::template onWalls<ExtrapolateWallPressure<K>>, Initial::Yes, whyNoWallPressure());
         plan("forces", chooseTerms(scene_, [](auto terms) { return forces<K>(terms); }, TermList<PressureForce>{},
                                    OptionalTerms{}), Initial::Yes);
+        noteTerms(OptionalTerms{});
         plan("extremes", &S::findExtremes, Initial::No,
              keepsLists || constants_.fixedStep <= 0 ? "" : "the time step is fixed (time.mode)");
         plan("time step", &S::chooseTimeStep);
@@ -138,6 +139,9 @@ private:
     void plan(const char* name, void (SimulationOn::*run)(), Initial initial = Initial::No, const char* skipped = "") {
         rows_.push_back({name, skipped});
         if (!*skipped) plan_.push_back({name, run, initial});
+    }
+    template <class... Ts> void noteTerms(TermList<Ts...>) {
+        (rows_.push_back({std::string("forces: ") + Ts::name, Ts::skipped(scene_)}), ...);
     }
     const char* whyNoWallPressure() const {
         if (wallCount_ == 0) return "there are no boundary particles";

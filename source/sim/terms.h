@@ -1,5 +1,5 @@
-// Terms: one pairwise contribution to the acceleration each. A term says whether a scene wants it, what it
-// reads of both particles, and adds itself: between fluid particles (`add`) and between a fluid particle and a
+// Terms: one pairwise contribution to the acceleration each. A term says why a scene does without it (""
+// when it is wanted), what it reads of both particles, and adds itself: between fluid particles (`add`) and between a fluid particle and a
 // boundary particle (`addWall`; v_b = 0). grad W = gradientNorm/R^5 g x, and what all pairs share, the mass m and
 // gradientNorm/R^5, is left out here and multiplied once, at the end of the pass.
 #if defined(SPINDRIFT_SIM_TERMS_H) == defined(HWY_TARGET_TOGGLE)
@@ -37,7 +37,8 @@ template <class R> struct Acceleration { Vector<R> pressure, other; };
 // ExtrapolateWallPressure gave them; in the classic formulation (and Akinci 2012) they have none.
 struct PressureForce {
     static constexpr unsigned needs = 0;
-    static bool wanted(const Scene&) { return true; }
+    static constexpr const char* name = "pressure";
+    static const char* skipped(const Scene&) { return ""; }
     template <class R>
     HD static void add(const Constants&, const Pair<R>& p, R g, const State<R>& i, const State<R>& j, Acceleration<R>& a) {
         a.pressure = subtractScaled(a.pressure, g * (i.pressureTerm + j.pressureTerm), p.r);
@@ -51,8 +52,10 @@ struct PressureForce {
 // Laminar viscosity, Morris 1997: sum_j m 2 mu / (rho_i rho_j) (x.grad W) / (d^2 + eta^2) v_ij; walls don't slip.
 struct LaminarViscosity {
     static constexpr unsigned needs = Velocity | InverseDensity;
-    static bool wanted(const Scene& s) {
-        return s.simulation.formulation == Formulation::Wcsph && s.fluid.viscosity > 0;
+    static constexpr const char* name = "laminar viscosity";
+    static const char* skipped(const Scene& s) {
+        if (s.simulation.formulation == Formulation::Classic) return "the classic formulation has another one";
+        return s.fluid.viscosity > 0 ? "" : "fluid.viscosity is 0";
     }
     template <class R> HD static R strength(const Constants& c, const Pair<R>& p, R g, R ownInverseDensity) {
         return R(c.laminar) * ownInverseDensity * g * (p.distance2 * p.inverseDistance2);
@@ -71,8 +74,10 @@ struct LaminarViscosity {
 // with the mean of 1/rho in place of one over the mean.
 struct ArtificialViscosity {
     static constexpr unsigned needs = Velocity | InverseDensity;
-    static bool wanted(const Scene& s) {
-        return s.simulation.formulation == Formulation::Wcsph && s.fluid.artificialViscosity > 0;
+    static constexpr const char* name = "artificial viscosity";
+    static const char* skipped(const Scene& s) {
+        if (s.simulation.formulation == Formulation::Classic) return "the classic formulation has none";
+        return s.fluid.artificialViscosity > 0 ? "" : "fluid.artificial_viscosity is 0";
     }
     template <class R> HD static R approach(const Constants& c, const Pair<R>& p, R g, Vector<R> vij) {
         return R(c.artificial) * g * (min(dot(vij, p.r), R(0)) * p.inverseDistance2);
@@ -92,8 +97,10 @@ struct ArtificialViscosity {
 // The classic formulation's viscosity: nu sum_j m (v_j - v_i) / rho0 (R - d) / (pi R^6); walls slip.
 struct ClassicViscosity {
     static constexpr unsigned needs = Velocity;
-    static bool wanted(const Scene& s) {
-        return s.simulation.formulation == Formulation::Classic && s.fluid.viscosity > 0;
+    static constexpr const char* name = "classic viscosity";
+    static const char* skipped(const Scene& s) {
+        if (s.simulation.formulation != Formulation::Classic) return "only the classic formulation has it";
+        return s.fluid.viscosity > 0 ? "" : "fluid.viscosity is 0";
     }
     template <class R>
     HD static void add(const Constants& c, const Pair<R>& p, R, const State<R>& i, const State<R>& j, Acceleration<R>& a) {
@@ -112,8 +119,8 @@ template <class Done, class... Chosen> auto chooseTerms(const Scene&, Done done,
 }
 template <class Done, class... Chosen, class T, class... Rest>
 auto chooseTerms(const Scene& s, Done done, TermList<Chosen...> chosen, TermList<T, Rest...>) {
-    return T::wanted(s) ? chooseTerms(s, done, TermList<Chosen..., T>{}, TermList<Rest...>{})
-                        : chooseTerms(s, done, chosen, TermList<Rest...>{});
+    return *T::skipped(s) ? chooseTerms(s, done, chosen, TermList<Rest...>{})
+                          : chooseTerms(s, done, TermList<Chosen..., T>{}, TermList<Rest...>{});
 }
 
 }  // namespace spindrift::LANES

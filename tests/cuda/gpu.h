@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <string>
 
 #define NEED_GPU() \
@@ -24,7 +25,8 @@ inline constexpr bool emulated = false;
 
 // A shipped scene; coarser on the emulated GPU, so that it has about `particles` of fluid there.
 inline Scene shippedScene(const std::string& file, double particles = 800) {
-    Scene scene = loadScene(std::string(SPINDRIFT_SOURCE_DIR) + "/configs/" + file);
+    const char* folder = std::getenv("SPINDRIFT_CONFIGS");   // where the checkout is not where the program was built
+    Scene scene = loadScene(std::string(folder ? folder : SPINDRIFT_SOURCE_DIR "/configs") + "/" + file);
     const double count = double(countParticles(scene).fluid);
     if (emulated && count > particles) scene.simulation.spacing *= float(std::cbrt(count / particles));
     checkScene(scene, file);

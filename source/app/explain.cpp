@@ -1,0 +1,65 @@
+#include "app/explain.h"
+
+#include "core/error.h"
+#include "sim/simulation.h"
+
+#include <fmt/format.h>
+
+#include <map>
+
+namespace spindrift {
+namespace {
+
+// Time of each pass, ms a run. A GPU measures the first step after a reset only, so each step is one.
+std::map<std::string, double> timePasses(Simulation& simulation, int steps) {
+    std::map<std::string, PassTime> sums;
+    for (int k = 0; k < steps; ++k) {
+        simulation.resetTimes();
+        simulation.step();
+        for (const PassTime& t : simulation.times()) {
+            sums[t.name].ms += t.ms;
+            sums[t.name].runs += t.runs;
+        }
+    }
+    std::map<std::string, double> each;
+    for (const auto& [name, t] : sums) each[name] = t.ms / double(t.runs);
+    return each;
+}
+
+const char* describe(Formulation f) {
+    return f == Formulation::Classic ? "classic" : "weakly compressible";
+}
+const char* describe(Kernel k) { return k == Kernel::WendlandC2 ? "Wendland C2" : "cubic spline"; }
+
+}  // namespace
+
+int explain(const Scene& scene) {
+    const auto simulation = makeSimulation(scene);
+    const int64_t particles = int64_t(simulation->fluidCount()) + simulation->wallCount();
+    const double support = scene.simulation.support, mebibyte = 1 << 20;
+    fmt::print("scene        {}\n", scene.name);
+    fmt::print("device       {}\n", simulation->deviceName());
+    fmt::print("particles    {} fluid, {} boundary\n", simulation->fluidCount(), simulation->wallCount());
+    fmt::print("formulation  {}, {}, R = {:g} dx = {:.3g} m, about {:.0f} neighbours\n",
+               describe(scene.simulation.formulation), describe(scene.simulation.kernel), support,
+               supportRadius(scene), 4.18879 * support * support * support);
+    fmt::print("memory       {:.1f} MiB, {:.0f} bytes a particle\n\n", double(simulation->bytes()) / mebibyte,
+               double(simulation->bytes()) / double(particles));
+
+    const auto times = timePasses(*simulation, scene.compute.steps);
+    fmt::print("a step{:27}{}\n", "", times.empty() ? "" : "ms");
+    double sum = 0;
+    for (const PlanRow& row : simulation->plan()) {
+        if (!row.skipped.empty()) continue;
+        const auto time = times.find(row.name);
+        fmt::print("  {:29}{:>5}\n", row.name, time == times.end() ? "" : fmt::format("{:.3f}", time->second));
+        sum += time == times.end() ? 0 : time->second;
+    }
+    if (!times.empty()) fmt::print("  {:29}{:.3f}\n", "together", sum);
+    fmt::print("\nskipped\n");
+    for (const PlanRow& row : simulation->plan())
+        if (!row.skipped.empty()) fmt::print("  {:29}{}\n", row.name, row.skipped);
+    return int(Exit::Ok);
+}
+
+}  // namespace spindrift
