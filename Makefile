@@ -4,7 +4,7 @@ BUILD ?= build
 ARGS ?=
 CMAKE_ARGS ?=
 
-.PHONY: run test build configure bench meson sanitize install clean
+.PHONY: run test build configure bench gpu-check gpu-bundle meson sanitize install clean
 
 # Only what it needs: the tests are built by `make build`.
 run: configure
@@ -17,6 +17,15 @@ test: build
 bench: configure
 	@cmake --build $(BUILD) --target spindrift
 	@$(BUILD)/spindrift bench $(ARGS)
+
+# All checks and figures of the GPU, into docs/results/; without a GPU a dry run that writes nothing there. Programs that
+# are there already (gpu-bundle made them on a machine with a compiler): make gpu-check BUNDLE=folder
+gpu-check: $(if $(BUNDLE),,build)
+	python3 tests/cuda/gpu_check.py $(or $(BUNDLE),$(BUILD)) $(ARGS)
+
+# The programs that gpu-check needs and their libraries, in one folder that runs on other machines.
+gpu-bundle: build
+	tests/cuda/bundle.sh $(BUILD) $(or $(BUNDLE),$(BUILD)-bundle)
 
 build: configure
 	@cmake --build $(BUILD)

@@ -90,6 +90,7 @@ public:
     Cuda& operator=(Cuda&&) = delete;
 
     int index() const { return index_; }
+    cudaStream_t stream() const { return stream_; }
     int64_t bytes() const { return bytes_; }   // held by buffers
 
     // Zeroed memory. Throws Error (Memory).

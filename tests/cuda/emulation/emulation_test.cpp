@@ -1,4 +1,5 @@
 // What only an emulated GPU can show: failing drivers, lost devices, the order of threads, and what is done how often.
+#include "app/gpu_bench.h"
 #include "core/error.h"
 #include "cuda/gpu.h"
 #include "emulation.h"
@@ -125,6 +126,14 @@ TEST_F(EmulatedGpu, StepsDontWaitForTheHost) {
     EXPECT_EQ(emulation::counts.kernels, before) << "something waited within a step";
     gpu->wait();
     EXPECT_GT(emulation::counts.kernels, before + 200);
+}
+
+// The benchmark is run by hand only, where there is a GPU.
+TEST_F(EmulatedGpu, BenchmarkOfFramesAndSwitchingWorks) {
+    scene.compute.backend = Backend::Cuda;
+    const nlohmann::json row = benchFrameAndSwitch(scene);
+    EXPECT_EQ(row["vertices"], "written in place");
+    for (const char* key : {"particles", "frame_ms", "switch_to_cpu_ms", "switch_back_ms"}) EXPECT_GT(row[key], 0) << key;
 }
 
 // The emulation itself: it must notice what it is there to notice.

@@ -1,0 +1,13 @@
+#!/bin/sh
+# bundle.sh BUILD FOLDER: the programs that gpu_check.py runs, stripped, with the shared libraries they need, without those of
+# the C library and the graphics driver, which every machine has its own of.
+set -eu
+build=$1 folder=$2
+rm -rf "$folder"
+mkdir -p "$folder/lib"
+for program in spindrift unit_tests cuda_tests cuda_sort_bench; do
+    strip -o "$folder/$program" "$build/$program"
+    ldd "$build/$program" | awk '$3 ~ /^\// { print $3 }'
+done | sort -u | grep -vE '/(libc|libm|libdl|libpthread|librt|libEGL|libGL|libGLX|libOpenGL|libGLdispatch|libdrm.*)\.so' |
+    xargs cp -L -t "$folder/lib"
+du -sh "$folder"
