@@ -125,6 +125,26 @@ TYPED_TEST(Devices, SortIsStable) {
     }
 }
 
+// Particles that are nowhere must not share a cell: the run has to stop with a message, not to hang in N^2 pairs.
+TYPED_TEST(Devices, ParticlesThatAreNowhereAreSpreadOverTheCells) {
+    const int n = 1000;
+    TypeParam device = this->make();
+    Buffer<int, TypeParam> id(device), key(device);
+    Buffer<float, TypeParam> position(device);
+    this->put(device, id, std::vector<int>(n, 1));
+    this->put(device, position, std::vector<float>(4 * n, NAN));
+    key.resize(n);
+    Particles p{};
+    p.id = id.data();
+    p.position = {position.data()};
+    device.forEach(n, FindCell{p, Grid{{0, 0, 0}, 1, 1, {20, 10, 10}}, key.data()});
+    std::vector<int> keys = this->fetch(device, key);
+    std::sort(keys.begin(), keys.end());
+    for (int i = 1; i < n; ++i) ASSERT_NE(keys[i], keys[i - 1]);
+    EXPECT_GE(keys.front(), 0);
+    EXPECT_LT(keys.back(), 20 * 10 * 10);
+}
+
 TEST(CudaVertices, DeviceMemoryAndHostGetTheSame) {
     NEED_GPU();
     const Scene scene = testScene("ball_drop_small.json");

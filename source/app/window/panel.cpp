@@ -47,6 +47,7 @@ void transport(Ui& ui) {
 
 void status(const Ui& ui) {
     const Measurement& m = ui.player.measurement();
+    row("device", "{}", ui.device.substr(0, ui.device.find(',')));
     row("particles", "{} + {} walls", ui.fluidCount, ui.wallCount);
     row("time", "{:.4f} s", m.time);
     row("time step", "{:.3g} ms", 1e3 * m.dt);
@@ -122,6 +123,7 @@ void panel(Ui& ui, int windowHeight) {
         ImGui::PushTextWrapPos();
         text("{}", ui.device);
         text("{}", ui.glRenderer);
+        if (ui.frame.copiesVertices()) text("vertices are copied: another device draws");
         ImGui::PopTextWrapPos();
         backend(ui);
     }

@@ -80,8 +80,7 @@ void Player::switchBackend(Backend backend) {
     next.compute.backend = backend;
     stepper_ = std::make_unique<Stepper>(makeSimulation(next, stepper_->simulation().state()));
     scene.compute.backend = backend;
-    collected_ = stirWanted_ = false;
-    ++generation_;
+    stirWanted_ = false;
 }
 
 void Player::stepOnce() {

@@ -57,7 +57,7 @@ public:
     const Camera& initialCamera() const { return initialCamera_; }
     double stepsPerSecond() const { return stepsPerSecond_; }
     double realTimeFactor() const { return realTimeFactor_; }  // simulated / wall time
-    int generation() const { return generation_; }             // grows with every new simulation
+    int generation() const { return generation_; }             // grows with every new run
 
 private:
     void begin(Scene, std::unique_ptr<Simulation>);

@@ -59,8 +59,15 @@ void Ui::switchBackend() {
     if (!noGpu.empty()) return say("no GPU to switch to: " + noGpu, true);
     try {
         player.switchBackend(onGpu ? Backend::Cpu : Backend::Cuda);
-        say(std::string("goes on, on the ") + (onGpu ? "CPU" : "GPU"));
+        noteDevice();
+        say(std::string("goes on, on the ") + (onGpu ? "GPU" : "CPU"));
     } catch (const Error& error) { say(error.what(), true); }
+}
+
+void Ui::noteDevice() {
+    device = player.simulation().deviceName();
+    onGpu = player.simulation().cudaDevice() != hostMemory;
+    rewrite = stale = true;
 }
 
 void Ui::colorBy(ColorBy by) {

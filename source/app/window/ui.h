@@ -66,6 +66,7 @@ struct Ui {
     void reset();
     void load(const std::string& file);
     void switchBackend();
+    void noteDevice();  // of a simulation that is new
     void colorBy(ColorBy);
     void resetCamera();
     void takeScreenshot();

@@ -212,11 +212,9 @@ private:
         const Scene& scene = ui_.player.scene;
         ui_.frame.restartRange();
         Simulation& simulation = ui_.player.simulation();
-        ui_.device = simulation.deviceName();
-        ui_.onGpu = simulation.cudaDevice() != hostMemory;
+        ui_.noteDevice();
         ui_.fluidCount = simulation.fluidCount();
         ui_.wallCount = simulation.wallCount();
-        ui_.rewrite = ui_.stale = true;
         SDL_SetWindowTitle(screen_.window, (scene.window.title + " - " + scene.name).c_str());
     }
 
