@@ -107,7 +107,7 @@ void requireCuda(cudaError_t code, const char* what) {
 
 // --- the device ---
 
-Cuda::Cuda(int index) : index_(index) {
+Cuda::Cuda(int index) : Cuda(index, Nothing{}) {
     if (const std::string problem = cudaProblem(index); !problem.empty())
         throw Error(Exit::NoDevice, "--backend cuda: " + problem + "; or use --backend cpu");
     activate();

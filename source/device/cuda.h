@@ -172,6 +172,9 @@ public:
     void wait() const;
 
 private:
+    struct Nothing {};
+    Cuda(int index, Nothing) : index_(index) {}   // once this is done the destructor cleans up, whatever fails next
+
     static constexpr size_t scratchBytes = 256 << 10;
     struct Span { cudaEvent_t begin, end; PassTime* time; };
 

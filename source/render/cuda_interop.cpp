@@ -57,7 +57,9 @@ void CudaLoan::end() {
 
 Vertex* CudaLoan::map() {
     require(cudaSetDevice(device_), "choosing a device");
+    // On the default stream; the device works on another one, so that GL's reading of the last picture is waited for here.
     require(cudaGraphicsMapResources(1, &resource_, nullptr), "mapping the vertex buffer");
+    require(cudaStreamSynchronize(nullptr), "mapping the vertex buffer");
     void* memory = nullptr;
     size_t bytes = 0;
     require(cudaGraphicsResourceGetMappedPointer(&memory, &bytes, resource_), "mapping the vertex buffer");

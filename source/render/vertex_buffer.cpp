@@ -19,6 +19,7 @@ void VertexBuffer::resize(int count) {
 VertexMemory VertexBuffer::map(int device) {
     CHECK(!mapped());
     if (count_ == 0) return {nullptr, device};
+    if (device != hostMemory && !drawingDevice_) drawingDevice_ = drawingDevice();
     if (device != hostMemory && device == drawingDevice_) {
         if (!loan_.begun()) loan_.begin(buffer_, device);
         const VertexMemory memory{loan_.map(), device};

@@ -4,12 +4,14 @@
 #include "render/cuda_interop.h"
 #include "render/gl.h"
 
+#include <optional>
+
 namespace spindrift {
 
 class VertexBuffer {
 public:
     // Needs a current context.
-    VertexBuffer() : buffer_(makeBuffer()), drawingDevice_(drawingDevice()) {}
+    VertexBuffer() : buffer_(makeBuffer()) {}
 
     // Keeps the memory when it's large enough; the contents are lost when it grows.
     void resize(int count);
@@ -27,7 +29,7 @@ private:
     enum class Mapped { Not, Host, Device };
     GlBuffer buffer_;
     int count_ = 0, capacity_ = 0;
-    int drawingDevice_;
+    std::optional<int> drawingDevice_;   // asked for when a GPU steps: without one CUDA needn't start
     Mapped mapped_ = Mapped::Not;
     CudaLoan loan_;   // ends before the buffer does
 };

@@ -24,7 +24,7 @@ inline constexpr bool emulated = false;
 #endif
 
 // A shipped scene; coarser on the emulated GPU, so that it has about `particles` of fluid there.
-inline Scene shippedScene(const std::string& file, double particles = 800) {
+inline Scene shippedScene(const std::string& file, double particles = 400) {
     const char* folder = std::getenv("SPINDRIFT_CONFIGS");   // where the checkout is not where the program was built
     Scene scene = loadScene(std::string(folder ? folder : SPINDRIFT_SOURCE_DIR "/configs") + "/" + file);
     const double count = double(countParticles(scene).fluid);

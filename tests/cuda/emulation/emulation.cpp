@@ -209,8 +209,8 @@ cudaError_t cudaStreamDestroy(cudaStream_t s) {
     return cudaSuccess;
 }
 cudaError_t cudaStreamSynchronize(cudaStream_t s) {
-    if (s->recording) return cudaErrorStreamCaptureUnsupported;
-    if (!machine.lost) drain(s);
+    if (s && s->recording) return cudaErrorStreamCaptureUnsupported;
+    if (s && !machine.lost) drain(s);
     return alive();
 }
 cudaError_t cudaStreamBeginCapture(cudaStream_t s, cudaStreamCaptureMode) {
