@@ -71,11 +71,12 @@ TEST_F(EmulatedGpu, ALostDeviceIsOneLineAndNothingHangs) {
 }
 
 TEST_F(EmulatedGpu, MemoryThatRunsOutInTheMiddleIsAnError) {
-    for (size_t kib : {60, 260, 300, 400, 500}) {
-        emulation::machine.memory = kib << 10;
+    const double needed = double(start(scene)->bytes());
+    for (double share : {0.0, 0.2, 0.5, 0.7, 0.8, 0.9, 0.99}) {
+        emulation::machine.memory = size_t(share * needed);
         try {
             start(scene);
-            FAIL() << kib;
+            FAIL() << share;
         } catch (const Error& error) { EXPECT_EQ(error.exit, Exit::Memory) << error.what(); }
     }
     emulation::machine = {};
