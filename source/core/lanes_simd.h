@@ -78,6 +78,8 @@ template <class D> HD inline Pack<D> select(typename Pack<D>::Mask m, Pack<D> ye
 HD inline bool any(Wide::Mask m) { return !hn::AllFalse(WideTag(), m.m); }
 // Exact root and division keep the divider busy beside the multipliers: cheaper than estimates with Newton steps.
 template <class D> HD inline Pack<D> squareRoot(Pack<D> a) { return Pack<D>(hn::Sqrt(a.v)); }
+template <class D> HD inline Pack<D> nearestInteger(Pack<D> a) { return Pack<D>(hn::Round(a.v)); }
+template <class D> HD inline Pack<D> roundDown(Pack<D> a) { return Pack<D>(hn::Floor(a.v)); }
 // Sum over the four neighbours of each particle i, in all of its lanes.
 HD inline Wide total(Wide sum) {
     sum += Wide(hn::Shuffle2301(sum.v));

@@ -48,13 +48,20 @@ void bounds(const Body& body, Vec3& low, Vec3& high) {
 void checkDomain(const Scene& scene) {
     const Vec3 size = scene.domain.max - scene.domain.min;
     const float R = supportRadius(scene);
+    const int dimensions = scene.simulation.dimensions;
     for (int k = 0; k < 3; ++k) {
         const char axis = "xyz"[k];
         if (size[k] <= 0)
             refuse("domain.max",
                    fmt::format("{} = {} m is not above domain.min {} = {} m; make it larger", axis,
                                scene.domain.max[k], axis, scene.domain.min[k]));
-        if (size[k] < R)
+        const float least = scene.domain.periodic(k) ? 4 * R : R;
+        if (scene.domain.periodic(k) && k >= dimensions)
+            refuse("domain.periodic_z", "there is no z in two dimensions; leave it out");
+        if (scene.domain.periodic(k) && size[k] < least)
+            refuse("domain", fmt::format("{} m along {}, a periodic axis, is less than four support radii, {} m; enlarge "
+                                         "the domain or lower simulation.spacing", size[k], axis, least));
+        if (k < dimensions && size[k] < R)
             refuse("domain",
                    fmt::format(
                        "{} m along {} is less than the support radius {} m; enlarge the domain or "
@@ -71,6 +78,9 @@ void checkDomain(const Scene& scene) {
                "the classic formulation needs a cube; give domain.max - domain.min three equal "
                "sides, or "
                "use simulation.formulation wcsph");
+    const bool periodic = scene.domain.periodicX || scene.domain.periodicY || scene.domain.periodicZ;
+    if (scene.simulation.formulation == Formulation::Classic && (dimensions == 2 || periodic))
+        refuse("simulation.formulation", "the classic one has three dimensions and walls all round; use wcsph");
 }
 
 void checkBody(const Scene& scene, size_t index) {
@@ -79,6 +89,7 @@ void checkBody(const Scene& scene, size_t index) {
     bounds(body, low, high);
     for (int k = 0; k < 3; ++k) {
         const char axis = "xyz"[k];
+        if (k >= scene.simulation.dimensions) continue;
         const float room = scene.domain.max[k] - scene.domain.min[k], extent = high[k] - low[k];
         const float tolerance = 1e-5f * room;
         if (extent <= 0)
@@ -150,7 +161,8 @@ void checkCounts(const Scene& scene) {
 double mostCells(const Scene& scene, double particles) {
     const Vec3d size = toDouble(scene.domain.max) - toDouble(scene.domain.min);
     const double dx = scene.simulation.spacing;
-    return std::min(size.x * size.y * size.z / (2 * dx * dx * dx), std::max(4e6, 16 * particles));
+    const double depth = scene.simulation.dimensions == 2 ? 2 * dx : size.z;
+    return std::min(size.x * size.y * depth / (2 * dx * dx * dx), std::max(4e6, 16 * particles));
 }
 
 }  // namespace

@@ -27,6 +27,9 @@ Vec3d domainSize(const Scene& scene) {
     return toDouble(scene.domain.max) - toDouble(scene.domain.min);
 }
 
+// In two dimensions z has one layer.
+bool flat(const Scene& scene, int axis) { return scene.simulation.dimensions == 2 && axis == 2; }
+
 // Half the body's extent along each axis, m.
 Vec3d halfExtent(const Body& body) {
     if (body.shape == Shape::Block) return 0.5 * (toDouble(body.max) - toDouble(body.min));
@@ -39,10 +42,14 @@ Vec3d halfExtent(const Body& body) {
 // its lower corner, a round body's is symmetric about its centre.
 Lattice bodyLattice(const Scene& scene, const Body& body) {
     const double dx = scene.simulation.spacing;
-    Lattice lattice{{}, {}, {dx, dx, dx}};
+    Lattice lattice{{}, {}, {dx, dx, flat(scene, 2) ? 0 : dx}};
     const Vec3d origin = toDouble(scene.domain.min);
     for (int k = 0; k < 3; ++k) {
         lattice.n[k] = latticePlanes(scene, body, k);
+        if (flat(scene, k)) {
+            lattice.first[k] = 0.5 * domainSize(scene)[k];
+            continue;
+        }
         lattice.first[k] = body.shape == Shape::Block ? double(body.min[k]) - origin[k] + 0.5 * dx
                                                       : double(body.center[k]) - origin[k] -
                                                             0.5 * dx * double(lattice.n[k] - 1);
@@ -54,21 +61,23 @@ Lattice bodyLattice(const Scene& scene, const Body& body) {
 // side. Flat sides are taken where the lattice ends, half a spacing beyond its last plane.
 bool contains(const Body& body, const Lattice& lattice, Vec3d origin, Vec3d p, double margin) {
     for (int k = 0; k < 3; ++k) {
-        const bool flat =
+        const bool plane =
             body.shape == Shape::Block || (body.shape == Shape::Cylinder && k == int(body.axis));
-        if (!flat) continue;
+        if (!plane) continue;
         const double low = lattice.first[k] - 0.5 * lattice.step[k];
         if (p[k] < low || p[k] > low + double(lattice.n[k]) * lattice.step[k]) return false;
     }
     if (body.shape == Shape::Block) return true;
     Vec3d d = p - (toDouble(body.center) - origin);
+    if (lattice.step.z == 0) d.z = 0;   // two dimensions
     if (body.shape == Shape::Cylinder) d[int(body.axis)] = 0;
     // The tolerance keeps lattice points on the surface on both sides of the centre alike.
     return length(d) <= double(body.radius) + margin + 1e-6 * lattice.step.x;
 }
 
-// Layers of boundary particles on each face: all that fluid half a spacing from the face can see. Classic: one.
-int64_t wallLayers(const Scene& scene) {
+// Layers of boundary particles on each face of an axis, none where it has none: all that fluid half a spacing from the face can see. Classic: one.
+int64_t wallLayers(const Scene& scene, int axis) {
+    if (scene.domain.periodic(axis) || flat(scene, axis)) return 0;
     if (scene.simulation.formulation == Formulation::Classic) return 1;
     return std::max<int64_t>(1, int64_t(std::ceil(scene.simulation.support)) - 1);
 }
@@ -87,32 +96,54 @@ Lattice wallLattice(const Scene& scene) {
             lattice.n[k] = std::max<int64_t>(2, planes(2 * double(std::ceil(side / R))));
             lattice.step[k] = 0.999 * size[k] / double(lattice.n[k] - 1);
         } else {
-            const int64_t inside = std::max<int64_t>(1, planes(std::round(size[k] / dx)));
+            const int64_t inside = flat(scene, k) ? 1 : std::max<int64_t>(1, planes(std::round(size[k] / dx)));
             lattice.step[k] = size[k] / double(inside);
-            lattice.n[k] = inside + 2 * wallLayers(scene);
-            lattice.first[k] = (0.5 - double(wallLayers(scene))) * lattice.step[k];
+            lattice.n[k] = inside + 2 * wallLayers(scene, k);
+            lattice.first[k] = (0.5 - double(wallLayers(scene, k))) * lattice.step[k];
         }
     }
     return lattice;
 }
 
-int64_t shellCount(const Lattice& l, int64_t layers) {
-    int64_t inner = 1;
-    for (int64_t n : l.n) inner *= std::max<int64_t>(0, n - 2 * layers);
-    return l.n[0] * l.n[1] * l.n[2] - inner;
+// The points of a lattice that are not in its inside.
+struct Shell {
+    Lattice lattice;
+    int64_t layers[3];
+    int64_t count() const {
+        int64_t all = 1, inner = 1;
+        for (int k = 0; k < 3; ++k) {
+            all *= lattice.n[k];
+            inner *= std::max<int64_t>(0, lattice.n[k] - 2 * layers[k]);
+        }
+        return all - inner;
+    }
+    bool contains(int64_t i, int axis) const { return i < layers[axis] || i >= lattice.n[axis] - layers[axis]; }
+};
+
+Shell wallShell(const Scene& scene) {
+    return {wallLattice(scene), {wallLayers(scene, 0), wallLayers(scene, 1), wallLayers(scene, 2)}};
 }
 
-void placeShell(const Lattice& l, int64_t layers, std::vector<Vec3>& out) {
-    out.reserve(size_t(shellCount(l, layers)));
-    auto inShell = [&](int64_t i, int axis) { return i < layers || i >= l.n[axis] - layers; };
+void placeShell(const Shell& shell, std::vector<Vec3>& out) {
+    const Lattice& l = shell.lattice;
+    out.reserve(size_t(shell.count()));
     for (int64_t k = 0; k < l.n[2]; ++k)
         for (int64_t j = 0; j < l.n[1]; ++j)
             for (int64_t i = 0; i < l.n[0]; ++i) {
-                if (inShell(i, 0) || inShell(j, 1) || inShell(k, 2))
+                if (shell.contains(i, 0) || shell.contains(j, 1) || shell.contains(k, 2))
                     out.push_back(toFloat(l.at(i, j, k)));
                 else
-                    i = l.n[0] - layers - 1;  // on to the far face
+                    i = l.n[0] - shell.layers[0] - 1;  // on to the far face
             }
+}
+
+// At p, relative to domain.min. Taylor and Green 1937, one wave length along each side of the domain.
+Vec3 startVelocity(const Scene& scene, const Body& body, Vec3d p) {
+    if (body.field == Field::Uniform) return body.velocity;
+    const Vec3d size = domainSize(scene);
+    const double amplitude = length(toDouble(body.velocity)), turn = 2 * std::numbers::pi;
+    const double x = turn * p.x / size.x, y = turn * p.y / size.y;
+    return toFloat(amplitude * Vec3d{-std::cos(x) * std::sin(y), std::sin(x) * std::cos(y), 0});
 }
 
 // Appends the points of body `b` that are not in an earlier body.
@@ -130,7 +161,7 @@ void placeBody(const Scene& scene, const std::vector<Lattice>& lattices, size_t 
                     free = !contains(bodies[e], lattices[e], origin, p, halfSpacing);
                 if (!free) continue;
                 out.positions.push_back(toFloat(p));
-                out.velocities.push_back(bodies[b].velocity);
+                out.velocities.push_back(startVelocity(scene, bodies[b], p));
             }
 }
 
@@ -147,6 +178,7 @@ float particleMass(const Scene& scene) {
 }
 
 int64_t latticePlanes(const Scene& scene, const Body& body, int axis) {
+    if (flat(scene, axis)) return 1;
     const double dx = scene.simulation.spacing;
     const double extent = 2 * halfExtent(body)[axis];
     int64_t n = planes(std::round(extent / dx));
@@ -164,7 +196,7 @@ Placement placeParticles(const Scene& scene) {
     out.positions.reserve(expected);
     out.velocities.reserve(expected);
     for (size_t b = 0; b < lattices.size(); ++b) placeBody(scene, lattices, b, out);
-    if (scene.walls.kind == WallKind::Particles) placeShell(wallLattice(scene), wallLayers(scene), out.walls);
+    if (scene.walls.kind == WallKind::Particles) placeShell(wallShell(scene), out.walls);
     return out;
 }
 
@@ -175,6 +207,10 @@ ParticleCount countParticles(const Scene& scene) {
     for (const Body& body : scene.fluid.bodies) {
         const Lattice l = bodyLattice(scene, body);
         double points = double(l.n[0]) * double(l.n[1]) * double(l.n[2]);
+        if (scene.simulation.dimensions == 2) {
+            fluid += points;
+            continue;
+        }
         // Every kept point's cell lies in the round body grown by half a cell's diagonal.
         const double r = double(body.radius) / dx + 0.5 * std::numbers::sqrt3;
         if (body.shape == Shape::Sphere)
@@ -184,7 +220,7 @@ ParticleCount countParticles(const Scene& scene) {
         fluid += points;
     }
     count.fluid = int64_t(std::min(fluid, 9e18));
-    if (scene.walls.kind == WallKind::Particles) count.walls = shellCount(wallLattice(scene), wallLayers(scene));
+    if (scene.walls.kind == WallKind::Particles) count.walls = wallShell(scene).count();
     return count;
 }
 

@@ -20,6 +20,7 @@ enum class TimeMode { Fixed, Cfl };
 enum class Shape { Block, Sphere, Cylinder };
 enum class Axis { X, Y, Z };
 enum class ColorBy { Plain, Velocity, Pressure, Density, Acceleration, Id };
+enum class Field { Uniform, TaylorGreen };
 enum class RangeMode { Frame, Run, Fixed };
 
 // One body of fluid, filled on a lattice. A block reads min and max, a sphere center and radius,
@@ -31,7 +32,8 @@ struct Body {
     float radius = 0.1f;                        // m
     float height = 0.2f;                        // m
     Axis axis = Axis::Y;
-    Vec3 velocity{0, 0, 0};                     // m/s
+    Vec3 velocity{0, 0, 0};                     // m/s; for a field its amplitude is the length
+    Field field = Field::Uniform;               // of velocity at the start
 };
 
 struct Window {
@@ -53,6 +55,7 @@ struct Compute {
 
 struct SimulationKnobs {
     Formulation formulation = Formulation::Wcsph;
+    int dimensions = 3;                         // 2: one layer of particles in the middle of the domain's z
     Kernel kernel = Kernel::WendlandC2;
     float spacing = 0.02f;                      // m, initial distance of particles
     float support = 2.6f;                       // support radius R / spacing
@@ -60,7 +63,11 @@ struct SimulationKnobs {
     float accelerationLimit = 0;                // m/s^2, caps the pressure acceleration; 0 = off
 };
 
-struct Domain { Vec3 min{0, 0, 0}, max{1.6f, 0.9f, 0.6f}; };   // m
+struct Domain {
+    Vec3 min{0, 0, 0}, max{1.6f, 0.9f, 0.6f};   // m
+    bool periodicX = false, periodicY = false, periodicZ = false;   // who leaves on one side enters on the other
+    bool periodic(int axis) const { return axis == 0 ? periodicX : axis == 1 ? periodicY : periodicZ; }
+};
 
 struct Walls {
     WallKind kind = WallKind::Particles;
@@ -133,6 +140,6 @@ struct Scene {
 
 // Derived values, so that every reader computes them the same way.
 float supportRadius(const Scene&);              // m
-float particleMass(const Scene&);               // kg
+float particleMass(const Scene&);               // kg; in two dimensions of a slab one spacing thick
 
 }  // namespace spindrift

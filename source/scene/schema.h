@@ -33,6 +33,7 @@ constexpr auto enumNames(ColorBy) {
     return std::array{"plain", "velocity", "pressure", "density", "acceleration", "id"};
 }
 constexpr auto enumNames(ColorMap) { return std::array{"viridis", "cividis", "turbo", "coolwarm"}; }
+constexpr auto enumNames(Field) { return std::array{"uniform", "taylor_green"}; }
 constexpr auto enumNames(RangeMode) { return std::array{"frame", "run", "fixed"}; }
 
 // Visits one body's knobs; `at` is its path, e.g. "fluid.bodies[0]". Which knobs a body has depends
@@ -52,6 +53,8 @@ void visitBody(B& b, const std::string& at, Visitor&& visit) {
         visit(at + ".axis", b.axis, Knob{"", 0, 0, "direction of the axis", Restart});
     }
     visit(at + ".velocity", b.velocity, Knob{"m/s", -1e3f, 1e3f, "initial velocity", Restart});
+    visit(at + ".field", b.field,
+          Knob{"", 0, 0, "velocity at the start: the same everywhere, or Taylor-Green vortices of that amplitude", Restart});
 }
 
 namespace schema {
@@ -92,6 +95,8 @@ void visitPhysics(S& s, Visitor&& visit) {
     auto& sim = s.simulation;
     visit("simulation.formulation", sim.formulation,
           Knob{"", 0, 0, "weakly compressible SPH, or the historical classic one", Restart});
+    visit("simulation.dimensions", sim.dimensions,
+          Knob{"", 2, 3, "2 = a layer of particles, everything depends on x and y only", Restart});
     visit("simulation.kernel", sim.kernel, Knob{"", 0, 0, "smoothing kernel", Restart});
     visit("simulation.spacing", sim.spacing,
           Knob{"m", 1e-5f, 10, "initial distance of particles", Restart});
@@ -102,6 +107,10 @@ void visitPhysics(S& s, Visitor&& visit) {
 
     visit("domain.min", s.domain.min, Knob{"m", -1e4f, 1e4f, "lower corner of the box", Restart});
     visit("domain.max", s.domain.max, Knob{"m", -1e4f, 1e4f, "upper corner of the box", Restart});
+    visit("domain.periodic_x", s.domain.periodicX,
+          Knob{"", 0, 0, "who leaves along x enters on the other side", Restart});
+    visit("domain.periodic_y", s.domain.periodicY, Knob{"", 0, 0, "the same along y", Restart});
+    visit("domain.periodic_z", s.domain.periodicZ, Knob{"", 0, 0, "the same along z", Restart});
 
     visit("walls.kind", s.walls.kind,
           Knob{"", 0, 0, "reflecting box or boundary particles", Restart});

@@ -69,8 +69,12 @@ public:
             std::fill(lists_.begin(), lists_.end(), ClusterList{});
             return;
         }
+        const Search search{grid, reach, own, other, otherCellStart,
+                            {periodOf(grid.wraps.x, grid.cells.x, grid.perMetre.x),
+                             periodOf(grid.wraps.y, grid.cells.y, grid.perMetre.y),
+                             periodOf(grid.wraps.z, grid.cells.z, grid.perMetre.z)}};
         device.forRanges(clusters, piece, [&](int begin, int end) {
-            buildPiece(begin, end, Search{grid, reach, own, other, otherCellStart}, entries_[begin / piece],
+            buildPiece(begin, end, search, entries_[begin / piece],
                        pruned_[begin / piece]);
         });
     }
@@ -82,7 +86,9 @@ private:
         const ClusterBoxes& own;
         const ClusterBoxes& other;
         const int* cellStart;
+        float period[3];   // m, 0 where there is none
     };
+    static float periodOf(int wraps, int cells, float perMetre) { return wraps ? float(cells) / perMetre : 0; }
     static size_t cellCount(const Grid& g) { return size_t(g.cells.x) * g.cells.y * g.cells.z; }
 
     void buildPiece(int begin, int end, const Search& s, std::vector<uint32_t>& entries, std::vector<uint32_t>& pruned) {
@@ -110,10 +116,10 @@ private:
     // Clusters whose rows are searched together: a few that lie in one row.
     static constexpr int clustersTogether = 4;
     static int endOfGroup(const Search& s, int first, int end) {
-        const float rowSize = 1.01f / s.grid.perMetreRow;
+        const float rowSize[3] = {0, 1.01f / s.grid.perMetre.y, 1.01f / s.grid.perMetre.z};
         auto sameRow = [&](int c) {
             for (int k : {1, 2})
-                if (std::max(s.own.high[k][c], s.own.high[k][first]) - std::min(s.own.low[k][c], s.own.low[k][first]) > rowSize)
+                if (std::max(s.own.high[k][c], s.own.high[k][first]) - std::min(s.own.low[k][c], s.own.low[k][first]) > rowSize[k])
                     return false;
             return true;
         };
@@ -129,7 +135,6 @@ private:
         int count = 0;
         size_t clusters = 0;
         void add(uint32_t from, uint32_t to) {
-            if (count > 0) from = std::max(from, last[count - 1]);   // no cluster twice
             if (from >= to) return;
             CHECK(count < most);
             first[count] = from;
@@ -144,28 +149,58 @@ private:
             high[k] = *std::max_element(s.own.high[k].begin() + begin, s.own.high[k].begin() + end);
         }
         const Grid& g = s.grid;
-        const float reach2 = s.reach * s.reach, rowSize = 1 / g.perMetreRow;
+        const float reach2 = s.reach * s.reach;
+        const Rows inZ = rowsWithin(g.rowZ(low[2] - s.reach), g.rowZ(high[2] + s.reach), g.cells.z, g.low.z, 1 / g.perMetre.z);
+        const Rows inY = rowsWithin(g.rowY(low[1] - s.reach), g.rowY(high[1] + s.reach), g.cells.y, g.low.y, 1 / g.perMetre.y);
         RowRanges ranges;
-        for (int z = g.rowZ(low[2] - s.reach), lastZ = g.rowZ(high[2] + s.reach); z <= lastZ; ++z) {
-            const float gapZ = rowGap(g.low.z + z * rowSize, rowSize, low[2], high[2]);
-            for (int y = g.rowY(low[1] - s.reach), lastY = g.rowY(high[1] + s.reach); y <= lastY; ++y) {
-                const float gapY = rowGap(g.low.y + y * rowSize, rowSize, low[1], high[1]);
+        for (int z = inZ.first; z <= inZ.last; ++z) {
+            const float gapZ = inZ.gap(z, low[2], high[2]);
+            for (int y = inY.first; y <= inY.last; ++y) {
+                const float gapY = inY.gap(y, low[1], high[1]);
                 const float left2 = reach2 - gapY * gapY - gapZ * gapZ;
                 if (left2 <= 0) continue;
                 const float left = std::sqrt(left2);
-                const int row = (z * g.cells.y + y) * g.cells.x;
-                const int from = s.cellStart[row + g.cellX(low[0] - left)];
-                const int to = s.cellStart[row + g.cellX(high[0] + left) + 1];
-                ranges.add(uint32_t(from / clusterSize), uint32_t((to + clusterSize - 1) / clusterSize));
+                const int* row = s.cellStart + g.row(y, z);
+                uint32_t done = 0;   // two stretches of a row may share a cluster
+                forStretches(g.cellX(low[0] - left), g.cellX(high[0] + left), g.cells.x, [&](int from, int to) {
+                    const uint32_t end = uint32_t((row[to + 1] + clusterSize - 1) / clusterSize);
+                    ranges.add(std::max(done, uint32_t(row[from] / clusterSize)), end);
+                    done = end;
+                });
             }
         }
         return ranges;
+    }
+
+    // Rows of cells along y or z, images included.
+    struct Rows {
+        int first, last;
+        bool all;           // then the nearest image of a row is not known
+        float low, size;    // m
+        float gap(int row, float from, float to) const {
+            return all ? 0 : rowGap(low + float(row) * size, size, from, to);
+        }
+    };
+    static Rows rowsWithin(int first, int last, int n, float low, float size) {
+        if (last - first + 1 > n) return {0, n - 1, true, low, size};
+        return {first, last, false, low, size};
     }
 
     // Distance from the interval [lo, hi] to a row; rows at the rim are taken as endless, they hold who is outside.
     static float rowGap(float rowLow, float rowSize, float lo, float hi) {
         const float slack = 1e-3f * rowSize;   // a particle on the face may have been rounded into the next row
         return std::max(0.0f, std::max(rowLow - hi, lo - rowLow - rowSize) - slack);
+    }
+
+    // Gap between intervals, nearest images taken.
+    using Wides = hn::Vec<WideTag>;
+    HD static Wides gapBetween(Wides low, Wides high, float ownLow, float ownHigh, float period) {
+        const WideTag d;
+        const auto gap = hn::Max(hn::Sub(low, hn::Set(d, ownHigh)), hn::Sub(hn::Set(d, ownLow), high));
+        if (period <= 0) return gap;
+        const auto above = hn::Sub(hn::Add(low, hn::Set(d, period)), hn::Set(d, ownHigh));
+        const auto below = hn::Sub(hn::Add(hn::Set(d, ownLow), hn::Set(d, period)), high);
+        return hn::Min(gap, hn::Min(above, below));
     }
 
     // Of the clusters in [first, last) those whose box is nearer than `reach` to the box of cluster c.
@@ -176,8 +211,8 @@ private:
         for (uint32_t j = first; j < last; j += width) {
             auto distance2 = hn::Zero(d);
             for (int k = 0; k < 3; ++k) {
-                const auto gap = hn::Max(hn::Sub(hn::LoadU(d, s.other.low[k].data() + j), hn::Set(d, s.own.high[k][c])),
-                                         hn::Sub(hn::Set(d, s.own.low[k][c]), hn::LoadU(d, s.other.high[k].data() + j)));
+                const auto gap = gapBetween(hn::LoadU(d, s.other.low[k].data() + j), hn::LoadU(d, s.other.high[k].data() + j),
+                                            s.own.low[k][c], s.own.high[k][c], s.period[k]);
                 const auto apart = hn::Max(gap, hn::Zero(d));
                 distance2 = hn::MulAdd(apart, apart, distance2);
             }

@@ -16,19 +16,20 @@ namespace spindrift::LANES {
 
 inline Vector<real> toVector(Vec3 a) { return {real(a.x), real(a.y), real(a.z)}; }
 
-// sum of W dx^3 over the points of a unit lattice plane at height z (in dx), seen from a lattice point.
-template <class Kernel> double latticePlane(const Scene& s, int z) {
+// sum of W dx^d over the points of a unit lattice layer at this height (in dx), seen from a lattice point: a plane, in two
+// dimensions a line.
+template <class Kernel> double latticeLayer(const Scene& s, int height) {
     const double ratio = s.simulation.support;
-    const int n = int(ratio) + 1;
+    const int n = int(ratio) + 1, d = s.simulation.dimensions, across = d == 3 ? n : 0;
     double sum = 0;
-    for (int y = -n; y <= n; ++y)
+    for (int y = -across; y <= across; ++y)
         for (int x = -n; x <= n; ++x)
-            sum += double(Kernel::w(real(std::sqrt(double(x * x + y * y + z * z)) / ratio)));
-    return sum * Kernel::norm / (ratio * ratio * ratio);
+            sum += double(Kernel::w(real(std::sqrt(double(x * x + y * y + height * height)) / ratio)));
+    return sum * Kernel::norm(d) / std::pow(ratio, d);
 }
 
 // Fluid on its lattice must have exactly the rest density, in the bulk and in the layer next to a wall: the mass in
-// sums (returned, kg) is scaled for the one, the boundary particles' mass for the other.
+// sums (returned, kg, in two dimensions kg/m) is scaled for the one, the boundary particles' mass for the other.
 template <class Kernel> double calibrateMasses(const Scene& s, Constants& c) {
     const double scale = particleMass(s) / (double(s.fluid.restDensity) * std::pow(double(s.simulation.spacing), 3));
     if (s.simulation.formulation == Formulation::Classic) {
@@ -37,21 +38,22 @@ template <class Kernel> double calibrateMasses(const Scene& s, Constants& c) {
         c.wallMassFloor = 0;
         return particleMass(s) / 8;   // its kernel is an eighth of the normalised cubic spline
     }
-    double bulk = latticePlane<Kernel>(s, 0);
-    for (int z = 1; z <= int(s.simulation.support); ++z) bulk += 2 * latticePlane<Kernel>(s, z);
-    double wall = latticePlane<Kernel>(s, 0);
-    if (s.simulation.support > 2) wall += latticePlane<Kernel>(s, 1);
+    double bulk = latticeLayer<Kernel>(s, 0);
+    for (int h = 1; h <= int(s.simulation.support); ++h) bulk += 2 * latticeLayer<Kernel>(s, h);
+    double wall = latticeLayer<Kernel>(s, 0);
+    if (s.simulation.support > 2) wall += latticeLayer<Kernel>(s, 1);
     c.selfWeight = 1;
     c.wallMassFloor = 1;
     c.wallFactor = real(wall / bulk);
-    return particleMass(s) / (scale * bulk);
+    const double thickness = s.simulation.dimensions == 2 ? double(s.simulation.spacing) : 1;
+    return particleMass(s) / (scale * bulk * thickness);
 }
 
 // The speed that fluid can reach by falling through the domain, whichever way gravity points now, m/s.
 inline double expectedSpeed(const Scene& s, const FluidExtent& fluid) {
     const Vec3d g = toDouble(s.simulation.gravity), size = toDouble(s.domain.max - s.domain.min);
     double fall = 0;   // m^2/s^2
-    for (int k = 0; k < 3; ++k) fall += g[k] > 0 ? g[k] * (size[k] - fluid.low[k]) : -g[k] * fluid.high[k];
+    for (int k = 0; k < 3; ++k) fall += s.domain.periodic(k) ? std::abs(g[k]) * size[k] : g[k] > 0 ? g[k] * (size[k] - fluid.low[k]) : -g[k] * fluid.high[k];
     return std::sqrt(fluid.speed * fluid.speed + 2 * fall);
 }
 
@@ -63,8 +65,9 @@ template <class Kernel> Constants makeConstants(const Scene& s, const FluidExten
     c.support = real(R), c.support2 = real(R * R), c.inverseSupport2 = real(1 / (R * R));
     c.restDensity = real(rho0);
     const double mass = calibrateMasses<Kernel>(s, c);
-    c.kernelScale = real(mass * Kernel::norm / std::pow(R, 3));
-    c.gradientScale = real(mass * Kernel::gradientNorm / std::pow(R, 5));
+    const int d = s.simulation.dimensions;
+    c.kernelScale = real(mass * Kernel::norm(d) / std::pow(R, d));
+    c.gradientScale = real(mass * Kernel::gradient * Kernel::norm(d) / std::pow(R, d + 2));
 
     c.gamma = linear ? 1 : s.fluid.gamma;
     double sound = s.fluid.soundSpeed > 0 ? s.fluid.soundSpeed : s.fluid.speedRatio * std::max(expectedSpeed(s, fluid), 1e-3);
@@ -82,6 +85,11 @@ template <class Kernel> Constants makeConstants(const Scene& s, const FluidExten
     const Vec3 size = s.domain.max - s.domain.min;
     c.low = toVector(s.walls.margin * size);
     c.high = toVector((1 - s.walls.margin) * size);
+    c.periodic = s.domain.periodicX || s.domain.periodicY || s.domain.periodicZ;
+    const Vec3 period{s.domain.periodicX ? size.x : 0, s.domain.periodicY ? size.y : 0, s.domain.periodicZ ? size.z : 0};
+    c.period = toVector(period);
+    auto inverse = [](float length) { return length > 0 ? real(1 / double(length)) : real(0); };
+    c.inversePeriod = {inverse(period.x), inverse(period.y), inverse(period.z)};
     c.restitution = s.walls.restitution, c.friction = s.walls.friction;
     c.cfl = s.time.cfl, c.maxStep = s.time.maxStep;
     c.fixedStep = s.time.mode == TimeMode::Fixed ? real(s.time.step) : real(0);
@@ -90,10 +98,15 @@ template <class Kernel> Constants makeConstants(const Scene& s, const FluidExten
 }
 
 // Rows two spacings wide, cells half a spacing long; larger when the box is so empty that cells would outnumber
-// particles by far. One support radius more on each side than the domain, for boundary particles.
+// particles by far. One support radius more on each side than the domain, for boundary particles; along a periodic axis
+// just the domain, in whole cells.
 inline Grid makeGrid(const Scene& s, size_t particles) {
-    const float dx = s.simulation.spacing, rim = supportRadius(s);
-    const Vec3 size = s.domain.max - s.domain.min + Vec3{2 * rim, 2 * rim, 2 * rim};
+    const float dx = s.simulation.spacing;
+    Vec3 rim, size = s.domain.max - s.domain.min;
+    for (int k = 0; k < 3; ++k) {
+        rim[k] = s.domain.periodic(k) ? 0 : supportRadius(s);
+        size[k] += 2 * rim[k];
+    }
     double length = 0.5 * dx, row = 2 * dx;
     auto cellsAlong = [](double extent, double cell) { return std::max(1.0, std::ceil(extent / cell)); };
     auto total = [&] { return cellsAlong(size.x, length) * cellsAlong(size.y, row) * cellsAlong(size.z, row); };
@@ -103,10 +116,14 @@ inline Grid makeGrid(const Scene& s, size_t particles) {
         if (length > row) row = length;
     }
     Grid g;
-    g.low = toVector({-rim, -rim, -rim});
-    g.perMetreX = real(1 / length);
-    g.perMetreRow = real(1 / row);
+    g.low = toVector(Vec3{} - rim);
     g.cells = {int(cellsAlong(size.x, length)), int(cellsAlong(size.y, row)), int(cellsAlong(size.z, row))};
+    g.perMetre = {real(1 / length), real(1 / row), real(1 / row)};
+    if (s.simulation.dimensions == 2) g.cells.z = 1, g.perMetre.z = real(1 / size.z);
+    g.wraps = {s.domain.periodicX, s.domain.periodicY, s.domain.periodicZ};
+    if (g.wraps.x) g.perMetre.x = real(g.cells.x / size.x);
+    if (g.wraps.y) g.perMetre.y = real(g.cells.y / size.y);
+    if (g.wraps.z) g.perMetre.z = real(g.cells.z / size.z);
     return g;
 }
 

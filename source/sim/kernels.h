@@ -1,6 +1,6 @@
-// Smoothing kernels in 3D as functions of q = |x| / R, R the support radius. Each vanishes for q >= 1 by
+// Smoothing kernels as functions of q = |x| / R, R the support radius, in d dimensions. Each vanishes for q >= 1 by
 // itself, so that lanes whose neighbour is too far need no mask.
-//     W = norm / R^3 * w(q)        grad W = gradientNorm / R^5 * g(q) * x
+//     W = norm(d) / R^d * w(q)        grad W = gradient norm(d) / R^(d+2) * g(q) * x
 #if defined(SPINDRIFT_SIM_KERNELS_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SPINDRIFT_SIM_KERNELS_H
 #undef SPINDRIFT_SIM_KERNELS_H
@@ -14,7 +14,8 @@ namespace spindrift::LANES {
 
 // Wendland 1995, C2: w = (1-q)^4 (1+4q), g = (1-q)^3.
 struct WendlandC2Kernel {
-    static constexpr double norm = 21 / (2 * 3.14159265358979323846), gradientNorm = -20 * norm;
+    static constexpr double norm(int d) { return (d == 2 ? 7 : 10.5) / 3.14159265358979323846; }
+    static constexpr double gradient = -20;
     template <class R> HD static R w(R q) {
         const R t = max(R(1) - q, R(0)), t2 = t * t;
         return t2 * t2 * mulAdd(R(4), q, R(1));
@@ -27,7 +28,8 @@ struct WendlandC2Kernel {
 
 // Monaghan 1992, cubic spline with s = 2q: w = (2-s)^3/4 - (1-s)^3, each bracket only where positive.
 struct CubicSplineKernel {
-    static constexpr double norm = 8 / 3.14159265358979323846, gradientNorm = norm;
+    static constexpr double norm(int d) { return (d == 2 ? 40.0 / 7 : 8) / 3.14159265358979323846; }
+    static constexpr double gradient = 1;
     template <class R> HD static R w(R q) {
         const R s = q + q, a = max(R(2) - s, R(0)), b = max(R(1) - s, R(0));
         return R(0.25f) * a * a * a - b * b * b;

@@ -20,8 +20,17 @@ template <class R> struct Pair {
     R inverseDistance2;      // 1 / (distance^2 + eta^2), finite everywhere
 };
 
+// Of all images of a neighbour the nearest one. Empty slots, which lie many periods away, stay far.
+template <class R> HD inline R nearestImage(R r, real period, real inversePeriod) {
+    const R periods = min(max(r * R(inversePeriod), R(-1)), R(1));
+    return negMulAdd(nearestInteger(periods), R(period), r);
+}
+
 template <class R> HD inline Pair<R> makePair(const Constants& c, Vector<R> xi, Vector<R> xj) {
-    const Vector<R> r = xi - xj;
+    Vector<R> r = xi - xj;
+    if (c.periodic)
+        r = {nearestImage(r.x, c.period.x, c.inversePeriod.x), nearestImage(r.y, c.period.y, c.inversePeriod.y),
+             nearestImage(r.z, c.period.z, c.inversePeriod.z)};
     const R d2 = dot(r, r);
     return {r, d2, squareRoot(d2 * R(c.inverseSupport2)), R(1) / (d2 + R(c.eta2))};
 }
@@ -62,20 +71,21 @@ HD inline real rowGap(real x, int own, int row, real low, real rowSize) {
 template <Lists, class F>
 HD inline void forNeighbours(const View& v, const Neighbourhood& near, int, Vector<real> xi, const F& f) {
     const Grid& g = v.grid;
-    const real R = v.c.support, rowSize = 1 / g.perMetreRow;
+    const real R = v.c.support, rowSizeY = 1 / g.perMetre.y, rowSizeZ = 1 / g.perMetre.z;
     const int ownY = g.rowY(xi.y), y0 = g.rowY(xi.y - R), y1 = g.rowY(xi.y + R);
     const int ownZ = g.rowZ(xi.z), z0 = g.rowZ(xi.z - R), z1 = g.rowZ(xi.z + R);
     for (int z = z0; z <= z1; ++z) {
-        const real gapZ = rowGap(xi.z, ownZ, z, g.low.z, rowSize);
+        const real gapZ = rowGap(xi.z, ownZ, z, g.low.z, rowSizeZ);
         for (int y = y0; y <= y1; ++y) {
-            const real gapY = rowGap(xi.y, ownY, y, g.low.y, rowSize);
+            const real gapY = rowGap(xi.y, ownY, y, g.low.y, rowSizeY);
             const real left = squareRoot(max(v.c.support2 - gapY * gapY - gapZ * gapZ, real(0)));
-            const int row = (z * g.cells.y + y) * g.cells.x;
-            const int end = near.cellStart[row + g.cellX(xi.x + left) + 1];
-            for (int j = near.cellStart[row + g.cellX(xi.x - left)]; j < end; ++j) {
-                const Pair<real> pair = makePair(v.c, xi, load(near.position, j));
-                if (pair.distance2 < v.c.support2) f(pair, j);
-            }
+            const int* row = near.cellStart + g.row(y, z);
+            forStretches(g.cellX(xi.x - left), g.cellX(xi.x + left), g.cells.x, [&](int first, int last) {
+                for (int j = row[first], end = row[last + 1]; j < end; ++j) {
+                    const Pair<real> pair = makePair(v.c, xi, load(near.position, j));
+                    if (pair.distance2 < v.c.support2) f(pair, j);
+                }
+            });
         }
     }
 }

@@ -189,7 +189,8 @@ struct StirFluid {
     }
 };
 
-// Symplectic Euler: v += a dt, x += v dt; who leaves the box is put back on its face and bounces.
+// Symplectic Euler: v += a dt, x += v dt; who leaves the box is put back on its face and bounces, or enters on the other
+// side.
 struct Integrate {
     using Index = Quad;
     using R = Real<Quad>;
@@ -198,9 +199,9 @@ struct Integrate {
         const R dt = real(v.state->dt);
         Vector<R> u = addScaled(load(v.fluid.velocity, i), dt, load(v.fluid.acceleration, i));
         Vector<R> x = addScaled(load(v.fluid.position, i), dt, u);
-        bounce(x.x, v.c.low.x, v.c.high.x, u.x, u.y, u.z);
-        bounce(x.y, v.c.low.y, v.c.high.y, u.y, u.z, u.x);
-        bounce(x.z, v.c.low.z, v.c.high.z, u.z, u.x, u.y);
+        v.c.period.x > 0 ? wrap(x.x, v.c.period.x) : bounce(x.x, v.c.low.x, v.c.high.x, u.x, u.y, u.z);
+        v.c.period.y > 0 ? wrap(x.y, v.c.period.y) : bounce(x.y, v.c.low.y, v.c.high.y, u.y, u.z, u.x);
+        v.c.period.z > 0 ? wrap(x.z, v.c.period.z) : bounce(x.z, v.c.low.z, v.c.high.z, u.z, u.x, u.y);
         store(v.fluid.velocity, i, u);
         store(v.fluid.position, i, keepEmpty(load(v.fluid.position, i), x));
     }
@@ -209,6 +210,7 @@ struct Integrate {
         const auto empty = before.x > R(farAway);
         return {select(empty, before.x, after.x), select(empty, before.y, after.y), select(empty, before.z, after.z)};
     }
+    HD static void wrap(R& x, real period) { x = x - R(period) * roundDown(x * R(1 / period)); }
     HD void bounce(R& x, real low, real high, R& normal, R& tangent1, R& tangent2) const {
         const R inside = min(max(x, R(low)), R(high));
         const R depth = (x - inside) * (x - inside);

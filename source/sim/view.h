@@ -31,14 +31,38 @@ struct Particles {
 // Cells are thin along x and a few particles wide along y and z: a row of cells is one stretch of memory.
 struct Grid {
     Vector<real> low;              // m, corner of the first cell
-    real perMetreX, perMetreRow;   // cells per metre along x, and along y and z
+    Vector<real> perMetre;         // cells per metre
     Int3 cells;
+    Int3 wraps;                    // 1 along a periodic axis
     HD static int clamped(real cell, int n) { return !(cell > 0) ? 0 : cell >= real(n) ? n - 1 : int(cell); }
-    HD int cellX(real x) const { return clamped((x - low.x) * perMetreX, cells.x); }
-    HD int rowY(real y) const { return clamped((y - low.y) * perMetreRow, cells.y); }
-    HD int rowZ(real z) const { return clamped((z - low.z) * perMetreRow, cells.z); }
-    HD int cell(Vector<real> x) const { return (rowZ(x.z) * cells.y + rowY(x.y)) * cells.x + cellX(x.x); }
+    // Along a periodic axis an index beyond the grid is an image of the cell at wrapped(index).
+    HD static int index(real cell, int n, int wraps) {
+        if (!wraps || !(cell > real(-n) && cell < real(2 * n))) return clamped(cell, n);
+        return cell < 0 ? -1 - int(-cell) : int(cell);
+    }
+    HD static int wrapped(int i, int n) { return i < 0 ? i + n : i >= n ? i - n : i; }
+    HD int cellX(real x) const { return index((x - low.x) * perMetre.x, cells.x, wraps.x); }
+    HD int rowY(real y) const { return index((y - low.y) * perMetre.y, cells.y, wraps.y); }
+    HD int rowZ(real z) const { return index((z - low.z) * perMetre.z, cells.z, wraps.z); }
+    // Of the row at (y, z), which may be an image, the number of its first cell.
+    HD int row(int y, int z) const { return (wrapped(z, cells.z) * cells.y + wrapped(y, cells.y)) * cells.x; }
+    HD int cell(Vector<real> x) const {
+        return (clamped((x.z - low.z) * perMetre.z, cells.z) * cells.y + clamped((x.y - low.y) * perMetre.y, cells.y)) * cells.x +
+               clamped((x.x - low.x) * perMetre.x, cells.x);
+    }
 };
+
+// Calls f(first, last) for the stretches of cells of one row that [first, last] stands for: two of them where it reaches over
+// the end of a periodic row, never a cell twice.
+template <class F> HD inline void forStretches(int first, int last, int n, const F& f) {
+    if (last - first + 1 >= n) return f(0, n - 1);
+    if (first < 0) first += n, last += n;
+    if (last >= n) {
+        f(0, last - n);
+        last = n - 1;
+    }
+    f(first, last);
+}
 
 // The clusters of another set that may hold neighbours of one cluster (SIMD lanes only): all that are near enough for the
 // life of the list, and of these the ones with a neighbour in this step.
@@ -69,6 +93,8 @@ struct Constants {
     real accelerationLimit;                       // m/s^2
     Vector<real> gravity;                         // m/s^2
     Vector<real> low, high;                       // m, the box that positions stay in
+    Vector<real> period, inversePeriod;           // m, 1/m, of periodic axes; 0 for the others
+    bool periodic;                                // any of them
     real restitution, friction;
     real soundSpeed, cfl, maxStep, fixedStep, viscousStep;
     Vector<real> stirCenter, stirVelocity;

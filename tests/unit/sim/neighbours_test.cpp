@@ -49,6 +49,19 @@ Scene emptyBox(float support, Kernel kernel) {
     return s;
 }
 
+// A closed box in three dimensions, or not.
+struct Space { const char* name; int dimensions; bool x, y, z; };
+constexpr Space Box{"box", 3, false, false, false};
+constexpr Space OtherSpaces[] = {{"periodic x", 3, true, false, false},
+                                 {"periodic", 3, true, true, true},
+                                 {"flat", 2, false, false, false},
+                                 {"flat and periodic y", 2, false, true, false},
+                                 {"flat and periodic", 2, true, true, false}};
+void put(Scene& s, const Space& space) {
+    s.simulation.dimensions = space.dimensions;
+    s.domain.periodicX = space.x, s.domain.periodicY = space.y, s.domain.periodicZ = space.z;
+}
+
 enum class Cloud { Random, Clustered, OnWalls };
 
 Placement makeCloud(const Scene& s, Cloud cloud, int n) {
@@ -59,8 +72,12 @@ Placement makeCloud(const Scene& s, Cloud cloud, int n) {
         Vec3 x{s.domain.max.x * unit(random), s.domain.max.y * unit(random), s.domain.max.z * unit(random)};
         if (cloud == Cloud::Clustered) x = toFloat(0.3 * toDouble(x) + double(i % 3) * Vec3d{0.4, 0.3, 0.2});
         if (cloud == Cloud::OnWalls) x[i % 3] = i % 2 ? s.domain.max[i % 3] : 0;
+        Vec3 u{unit(random) - 0.5f, unit(random) - 0.5f, unit(random) - 0.5f};
+        if (s.simulation.dimensions == 2) x.z = 0.5f * s.domain.max.z, u.z = 0;
+        for (int k = 0; k < 3; ++k)
+            if (s.domain.periodic(k)) x[k] = std::fmod(x[k], s.domain.max[k]);
         p.positions.push_back(x);
-        p.velocities.push_back({unit(random) - 0.5f, unit(random) - 0.5f, unit(random) - 0.5f});
+        p.velocities.push_back(u);
     }
     p.positions[1] = p.positions[0];   // two in one place must not matter
     return p;
@@ -71,27 +88,38 @@ struct BruteForce {
     std::vector<double> rho;
     std::vector<Vec3d> a;
 
-    static double w(Kernel k, double q) {
+    static double w(Kernel k, double q, int dimensions) {
         if (q >= 1) return 0;
-        if (k == Kernel::WendlandC2) return 21 / (2 * Pi) * std::pow(1 - q, 4) * (1 + 4 * q);
+        const bool flat = dimensions == 2;
+        if (k == Kernel::WendlandC2) return (flat ? 7 / Pi : 21 / (2 * Pi)) * std::pow(1 - q, 4) * (1 + 4 * q);
         const double s = 2 * q;
-        return 8 / Pi * (s < 1 ? 1 - 1.5 * s * s + 0.75 * s * s * s : 0.25 * std::pow(2 - s, 3));
+        return (flat ? 40 / (7 * Pi) : 8 / Pi) * (s < 1 ? 1 - 1.5 * s * s + 0.75 * s * s * s : 0.25 * std::pow(2 - s, 3));
     }
     // By central difference, so that the analytic gradients are checked as well.
-    static double derivative(Kernel k, double q) {
+    static double derivative(Kernel k, double q, int d) {
         const double e = 1e-6;
-        return (w(k, q + e) - w(k, std::max(0.0, q - e))) / (q + e - std::max(0.0, q - e));
+        return (w(k, q + e, d) - w(k, std::max(0.0, q - e), d)) / (q + e - std::max(0.0, q - e));
     }
 
     BruteForce(const Scene& s, const Placement& p) {
-        const double R = supportRadius(s), h = R / 2, m = particleMass(s) / latticeSum(s), rho0 = s.fluid.restDensity;
+        const int dim = s.simulation.dimensions;
+        const double thickness = dim == 2 ? s.simulation.spacing : 1;
+        const double R = supportRadius(s), h = R / 2, rho0 = s.fluid.restDensity;
+        const double m = particleMass(s) / (latticeSum(s) * thickness);
         const double c = s.fluid.soundSpeed, k = rho0 * c * c / s.fluid.gamma;
         const size_t n = p.positions.size();
         rho.resize(n), a.resize(n);
-        auto apart = [&](size_t i, size_t j) { return toDouble(p.positions[i]) - toDouble(p.positions[j]); };
+        auto apart = [&](size_t i, size_t j) {
+            Vec3d r = toDouble(p.positions[i]) - toDouble(p.positions[j]);
+            for (int k = 0; k < 3; ++k) {
+                const double period = s.domain.max[k];   // min is 0
+                if (s.domain.periodic(k)) r[k] -= period * std::round(r[k] / period);
+            }
+            return r;
+        };
         for (size_t i = 0; i < n; ++i)
             for (size_t j = 0; j < n; ++j)
-                rho[i] += m / (R * R * R) * w(s.simulation.kernel, length(apart(i, j)) / R);
+                rho[i] += m / std::pow(R, dim) * w(s.simulation.kernel, length(apart(i, j)) / R, dim);
         auto term = [&](size_t i) {
             return std::max(0.0, k * (std::pow(rho[i] / rho0, s.fluid.gamma) - 1)) / (rho[i] * rho[i]);
         };
@@ -100,7 +128,7 @@ struct BruteForce {
                 const Vec3d r = apart(i, j), u = toDouble(p.velocities[i]) - toDouble(p.velocities[j]);
                 const double d = length(r);
                 if (d == 0 || d >= R) continue;
-                const Vec3d gradW = (m / std::pow(R, 4) * derivative(s.simulation.kernel, d / R) / d) * r;
+                const Vec3d gradW = (m / std::pow(R, dim + 1) * derivative(s.simulation.kernel, d / R, dim) / d) * r;
                 const double meet = std::min(0.0, dot(u, r)) / (d * d + 0.01 * h * h);
                 const double artificial = s.fluid.artificialViscosity * c * h * meet * 0.5 * (1 / rho[i] + 1 / rho[j]);
                 const double laminar = 2 * s.fluid.viscosity / (rho[i] * rho[j]) * dot(r, gradW) / (d * d + 0.01 * h * h);
@@ -110,18 +138,21 @@ struct BruteForce {
     // What the program divides the mass in sums by, so that a lattice has the rest density.
     static double latticeSum(const Scene& s) {
         const double ratio = s.simulation.support;
+        const int dim = s.simulation.dimensions, across = dim == 3 ? 4 : 0;
         const double scale = particleMass(s) / (s.fluid.restDensity * std::pow(double(s.simulation.spacing), 3));
         double sum = 0;
-        for (int z = -4; z <= 4; ++z)
+        for (int z = -across; z <= across; ++z)
             for (int y = -4; y <= 4; ++y)
                 for (int x = -4; x <= 4; ++x)
-                    sum += w(s.simulation.kernel, std::sqrt(double(x * x + y * y + z * z)) / ratio);
-        return scale * sum / std::pow(ratio, 3);
+                    sum += w(s.simulation.kernel, std::sqrt(double(x * x + y * y + z * z)) / ratio, dim);
+        return scale * sum / std::pow(ratio, dim);
     }
 };
 
-void expectBruteForce(float support, Kernel kernel, Cloud cloud, const Engine& engine) {
-    const Scene scene = emptyBox(support, kernel);
+void expectBruteForce(float support, Kernel kernel, Cloud cloud, const Engine& engine, const Space& space) {
+    Scene scene = emptyBox(support, kernel);
+    put(scene, space);
+    if (space.dimensions == 2) scene.fluid.particleMass = 0.3f;
     const Placement placement = makeCloud(scene, cloud, 1500);
     const auto simulation = tryMake(scene, placement, engine);
     if (!simulation) GTEST_SKIP() << "no " << engine.name << " here";
@@ -141,10 +172,24 @@ void expectBruteForce(float support, Kernel kernel, Cloud cloud, const Engine& e
 }
 
 class Neighbours : public testing::TestWithParam<std::tuple<float, Kernel, Cloud, Engine>> {};
-TEST_P(Neighbours, EqualBruteForce) { std::apply(expectBruteForce, GetParam()); }
+TEST_P(Neighbours, EqualBruteForce) {
+    const auto& [support, kernel, cloud, engine] = GetParam();
+    expectBruteForce(support, kernel, cloud, engine, Box);
+}
 INSTANTIATE_TEST_SUITE_P(All, Neighbours,
                          testing::Combine(testing::Values(2.0f, 2.6f),
                                           testing::Values(Kernel::WendlandC2, Kernel::CubicSpline),
+                                          testing::Values(Cloud::Random, Cloud::Clustered, Cloud::OnWalls),
+                                          testing::ValuesIn(Engines)));
+
+class Spaces : public testing::TestWithParam<std::tuple<Space, Cloud, Engine>> {};
+TEST_P(Spaces, EqualBruteForce) {
+    const auto& [space, cloud, engine] = GetParam();
+    SCOPED_TRACE(space.name);
+    for (Kernel kernel : {Kernel::WendlandC2, Kernel::CubicSpline}) expectBruteForce(2.6f, kernel, cloud, engine, space);
+}
+INSTANTIATE_TEST_SUITE_P(All, Spaces,
+                         testing::Combine(testing::ValuesIn(OtherSpaces),
                                           testing::Values(Cloud::Random, Cloud::Clustered, Cloud::OnWalls),
                                           testing::ValuesIn(Engines)));
 
@@ -174,10 +219,15 @@ TEST(NeighbourLists, TallColumnsAndSparseSprayAreFound) {
 
 // Lists that are kept for some steps give what lists made anew in each step give, up to the order of sums.
 TEST(NeighbourLists, KeptListsMissNobody) {
-    Scene scene = emptyBox(2.6f, Kernel::WendlandC2);
-    scene.simulation.gravity = {3, -9.81f, 1};
-    const Placement placement = makeCloud(scene, Cloud::Random, 3000);
-    for (const Engine& engine : Engines) {
+    for (int k = 0; k < 3 * int(std::size(Engines)); ++k) {
+        const Space& space = k % 3 == 0 ? Box : k % 3 == 1 ? OtherSpaces[1] : OtherSpaces[3];
+        const Engine& engine = Engines[k / 3];
+        SCOPED_TRACE(space.name);
+        Scene scene = emptyBox(2.6f, Kernel::WendlandC2);
+        put(scene, space);
+        scene.simulation.gravity = {3, -9.81f, 0};
+        if (space.dimensions == 2) scene.fluid.particleMass = 0.3f;
+        const Placement placement = makeCloud(scene, Cloud::Random, 3000);
         std::optional<std::vector<Particle>> fresh;
         for (float skin : {0.0f, 0.3f}) {
             scene.compute.skin = skin;
