@@ -66,8 +66,8 @@ template <class I> HD inline void store(VectorField f, I i, Vector<Real<I>> valu
     storeAt(p + 2 * clusterSize, origin(i), value.z);
 }
 #else
-// One aligned access instead of three.
-struct alignas(4 * sizeof(real)) Packed { real x, y, z, unused; };
+// One aligned access instead of three. The host's copies lie in ordinary vectors, which are aligned to 16 bytes.
+struct alignas(16) Packed { real x, y, z, unused; };
 HD inline Vector<real> load(VectorField f, int i) {
     const Packed p = reinterpret_cast<const Packed*>(f.data)[i];
     return {p.x, p.y, p.z};

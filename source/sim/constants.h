@@ -28,6 +28,28 @@ template <class Kernel> double latticeLayer(const Scene& s, int height) {
     return sum * Kernel::norm(d) / std::pow(ratio, d);
 }
 
+// What sums over the neighbours of a lattice point give, which integrals would make 1: of W, of x dW/dx, and the Laplacian
+// of x^2/2 in the form of LaminarViscosity.
+struct LatticeSums { double kernel = 0, gradient = 0, laplacian = 0; };
+
+template <class Kernel> LatticeSums latticeSums(const Scene& s) {
+    const double ratio = s.simulation.support, eta2 = 0.01 * ratio * ratio / 4;
+    const int n = int(ratio) + 1, d = s.simulation.dimensions, across = d == 3 ? n : 0;
+    LatticeSums sums;
+    for (int z = -across; z <= across; ++z)
+        for (int y = -n; y <= n; ++y)
+            for (int x = -n; x <= n; ++x) {
+                const double r2 = x * x + y * y + z * z;
+                const real q = real(std::sqrt(r2) / ratio);
+                const double norm = Kernel::norm(d) / std::pow(ratio, d);
+                const double gradient = -norm / (ratio * ratio) * Kernel::gradient * double(Kernel::g(q));
+                sums.kernel += norm * double(Kernel::w(q));
+                sums.gradient += gradient * x * x;
+                sums.laplacian += gradient * x * x * r2 / (r2 + eta2);
+            }
+    return sums;
+}
+
 // Fluid on its lattice must have exactly the rest density, in the bulk and in the layer next to a wall: the mass in
 // sums (returned, kg, in two dimensions kg/m) is scaled for the one, the boundary particles' mass for the other.
 template <class Kernel> double calibrateMasses(const Scene& s, Constants& c) {
@@ -38,8 +60,7 @@ template <class Kernel> double calibrateMasses(const Scene& s, Constants& c) {
         c.wallMassFloor = 0;
         return particleMass(s) / 8;   // its kernel is an eighth of the normalised cubic spline
     }
-    double bulk = latticeLayer<Kernel>(s, 0);
-    for (int h = 1; h <= int(s.simulation.support); ++h) bulk += 2 * latticeLayer<Kernel>(s, h);
+    const double bulk = latticeSums<Kernel>(s).kernel;
     double wall = latticeLayer<Kernel>(s, 0);
     if (s.simulation.support > 2) wall += latticeLayer<Kernel>(s, 1);
     c.selfWeight = 1;
@@ -67,7 +88,10 @@ template <class Kernel> Constants makeConstants(const Scene& s, const FluidExten
     const double mass = calibrateMasses<Kernel>(s, c);
     const int d = s.simulation.dimensions;
     c.kernelScale = real(mass * Kernel::norm(d) / std::pow(R, d));
-    c.gradientScale = real(mass * Kernel::gradient * Kernel::norm(d) / std::pow(R, d + 2));
+    // On its lattice a linear pressure has its exact gradient and a parabolic velocity its exact Laplacian, as the lattice
+    // has the rest density; without this, at R = 2.6 dx, the one is 3 %, the other 4 % too small.
+    const LatticeSums sums = s.simulation.formulation == Formulation::Wcsph ? latticeSums<Kernel>(s) : LatticeSums{1, 1, 1};
+    c.gradientScale = real(mass * Kernel::gradient * Kernel::norm(d) / std::pow(R, d + 2) * sums.kernel / sums.gradient);
 
     c.gamma = linear ? 1 : s.fluid.gamma;
     double sound = s.fluid.soundSpeed > 0 ? s.fluid.soundSpeed : s.fluid.speedRatio * std::max(expectedSpeed(s, fluid), 1e-3);
@@ -75,7 +99,7 @@ template <class Kernel> Constants makeConstants(const Scene& s, const FluidExten
     c.stiffness = real(rho0 * sound * sound / c.gamma);
     c.soundSpeed = real(sound);
 
-    c.laminar = real(2 * s.fluid.viscosity);
+    c.laminar = real(2 * s.fluid.viscosity * sums.gradient / sums.laplacian);
     c.artificial = real(s.fluid.artificialViscosity * sound * h / 2);
     c.classicViscosity = real(s.fluid.viscosity * particleMass(s) / (rho0 * 3.14159265358979323846 * std::pow(R, 5)) / c.gradientScale);
     c.eta2 = real(0.01 * h * h);

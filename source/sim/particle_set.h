@@ -71,10 +71,12 @@ public:
     void flip() {
         id_.swap(sortedId_);
         position_.swap(sortedPosition_);
-        velocity_.swap(sortedVelocity_);
+        if (kind_ == Kind::Fluid) velocity_.swap(sortedVelocity_);
         side_ = 1 - side_;
     }
     int side() const { return side_; }
+    // Boundary particles have a velocity only where fluid sticks to them.
+    void carryVelocity() { velocity_.resize(vectorSize(slots_)); }
     // Particles that never move are sorted once.
     void keepOrder() {
         sortedId_.release(), key_.release(), order_.release();

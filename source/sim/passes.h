@@ -89,21 +89,26 @@ template <class Kernel> struct ComputeDensity {
 };
 
 // What the fluid's pressure would be at a boundary particle: p_b = sum_f (p_f + rho_f g.(x_b - x_f)) W / sum_f W,
-// Adami 2012, eq. 27, for walls at rest. Walls don't pull.
-template <class Kernel> struct ExtrapolateWallPressure {
+// Adami 2012, eq. 27, for walls at rest. Walls don't pull. With `sticks` also the velocity that makes it zero at the wall:
+// v_b = -sum_f v_f W / sum_f W, eq. 23.
+template <class Kernel, bool sticks> struct ExtrapolateToWalls {
     using Index = Group;
     using R = Real<Group>;
     View v;
     HD void operator()(Group b) const {
         const Vector<R> gravity{v.c.gravity.x, v.c.gravity.y, v.c.gravity.z};
         R pressure = 0, weight = 0;
+        Vector<R> velocity{0, 0, 0};
         forNeighbours<Lists::All>(v, v.fluidNearWalls, b, load(v.walls.position, b), [&](const auto& p, Four j) LANE_CALL {
             const R rho = load(v.fluid.density, j), w = Kernel::w(p.q);
             pressure = mulAdd(w * rho, mulAdd(rho, load(v.fluid.pressureTerm, j), dot(gravity, p.r)), pressure);
             weight += w;
+            if constexpr (sticks) velocity = addScaled(velocity, w, load(v.fluid.velocity, j));
         });
-        const R mean = max(total(pressure), R(0)) / max(total(weight), R(real(1e-6)));
+        const R perWeight = R(1) / max(total(weight), R(real(1e-6)));
+        const R mean = max(total(pressure), R(0)) * perWeight;
         store(v.walls.pressureTerm, b, mean * R(1 / (v.c.restDensity * v.c.restDensity)));
+        if constexpr (sticks) store(v.walls.velocity, b, R(-1) * perWeight * total(velocity));
     }
 };
 
@@ -124,7 +129,7 @@ template <class Kernel, class... Terms> struct ComputeForces<Kernel, TermList<Te
             (Terms::add(v.c, p, Kernel::g(p.q), own, other, a), ...);
         });
         forNeighbours<Lists::Pruned>(v, v.wallsNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
-            (Terms::addWall(v.c, p, Kernel::g(p.q), own, Wall<R>{load(v.walls.mass, j), load(v.walls.pressureTerm, j)}, a), ...);
+            (Terms::addWall(v.c, p, Kernel::g(p.q), own, loadWall<needs>(v.walls, j), a), ...);
         });
         const R scale = v.c.gradientScale;
         const Vector<R> gravity{v.c.gravity.x, v.c.gravity.y, v.c.gravity.z};

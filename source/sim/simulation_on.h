@@ -41,6 +41,7 @@ public:
 
     void apply(const Scene& scene) override {
         scene_ = scene;
+        if (fluidSticks()) walls_.carryVelocity();
         withKernel([&](auto kernel) {
             using K = decltype(kernel);
             constants_ = makeConstants<K>(scene_, extent_);
@@ -125,7 +126,8 @@ private:
         plan("sort", &S::sortFluid, Initial::Yes);
         plan("neighbours", &S::findNeighbours, Initial::Yes, keepsLists ? "" : "rows of cells are walked instead of lists");
         plan("density", &S::template onFluid<ComputeDensity<K>>, Initial::Yes);
-        plan("wall pressure", &S::template onWalls<ExtrapolateWallPressure<K>>, Initial::Yes, whyNoWallPressure());
+        plan("walls", fluidSticks() ? &S::template onWalls<ExtrapolateToWalls<K, true>>
+                                    : &S::template onWalls<ExtrapolateToWalls<K, false>>, Initial::Yes, whyNoWallPressure());
         plan("forces", chooseTerms(scene_, [](auto terms) { return forces<K>(terms); }, TermList<PressureForce>{},
                                    OptionalTerms{}), Initial::Yes);
         noteTerms(OptionalTerms{});
@@ -140,6 +142,7 @@ private:
         rows_.push_back({name, skipped});
         if (!*skipped) plan_.push_back({name, run, initial});
     }
+    bool fluidSticks() const { return wallsCarryPressure() && !*LaminarViscosity::skipped(scene_); }
     template <class... Ts> void noteTerms(TermList<Ts...>) {
         (rows_.push_back({std::string("forces: ") + Ts::name, Ts::skipped(scene_)}), ...);
     }

@@ -1,6 +1,6 @@
 // Terms: one pairwise contribution to the acceleration each. A term says why a scene does without it (""
 // when it is wanted), what it reads of both particles, and adds itself: between fluid particles (`add`) and between a fluid particle and a
-// boundary particle (`addWall`; v_b = 0). grad W = gradientNorm/R^5 g x, and what all pairs share, the mass m and
+// boundary particle (`addWall`). grad W = gradientNorm/R^5 g x, and what all pairs share, the mass m and
 // gradientNorm/R^5, is left out here and multiplied once, at the end of the pass.
 #if defined(SPINDRIFT_SIM_TERMS_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SPINDRIFT_SIM_TERMS_H
@@ -14,7 +14,7 @@
 
 namespace spindrift::LANES {
 
-enum Needs : unsigned { Velocity = 1, InverseDensity = 2 };
+enum Needs : unsigned { Velocity = 1, InverseDensity = 2, WallVelocity = 4 };
 
 // What terms read of one particle.
 template <class R> struct State { Vector<R> velocity; R pressureTerm, inverseDensity; };
@@ -27,8 +27,16 @@ template <unsigned needs, class I> HD inline State<Real<I>> loadState(const Part
     return s;
 }
 
-// A boundary particle: its mass in units of m, and p / rho^2.
-template <class R> struct Wall { R mass, pressureTerm; };
+// A boundary particle: its mass in units of m, p / rho^2, and the velocity that makes fluid stick to the wall.
+template <class R> struct Wall { R mass, pressureTerm; Vector<R> velocity; };
+
+template <unsigned needs, class I> HD inline Wall<Real<I>> loadWall(const Particles& p, I i) {
+    Wall<Real<I>> w;
+    w.mass = load(p.mass, i);
+    w.pressureTerm = load(p.pressureTerm, i);
+    if constexpr (needs & WallVelocity) w.velocity = load(p.velocity, i);
+    return w;
+}
 
 // The pressure part is kept apart because the classic formulation caps it.
 template <class R> struct Acceleration { Vector<R> pressure, other; };
@@ -49,9 +57,10 @@ struct PressureForce {
     }
 };
 
-// Laminar viscosity, Morris 1997: sum_j m 2 mu / (rho_i rho_j) (x.grad W) / (d^2 + eta^2) v_ij; walls don't slip.
+// Laminar viscosity, Morris 1997: sum_j m 2 mu / (rho_i rho_j) (x.grad W) / (d^2 + eta^2) v_ij; at walls with the velocity
+// of ExtrapolateToWalls, so that fluid doesn't slip (Adami 2012).
 struct LaminarViscosity {
-    static constexpr unsigned needs = Velocity | InverseDensity;
+    static constexpr unsigned needs = Velocity | InverseDensity | WallVelocity;
     static constexpr const char* name = "laminar viscosity";
     static const char* skipped(const Scene& s) {
         if (s.simulation.formulation == Formulation::Classic) return "the classic formulation has another one";
@@ -66,7 +75,8 @@ struct LaminarViscosity {
     }
     template <class R>
     HD static void addWall(const Constants& c, const Pair<R>& p, R g, const State<R>& i, const Wall<R>& b, Acceleration<R>& a) {
-        a.other = addScaled(a.other, strength(c, p, g, i.inverseDensity) * i.inverseDensity * b.mass, i.velocity);
+        a.other = addScaled(a.other, strength(c, p, g, i.inverseDensity) * i.inverseDensity * b.mass,
+                            i.velocity - b.velocity);
     }
 };
 

@@ -137,7 +137,7 @@ TYPED_TEST(Devices, ParticlesThatAreNowhereAreSpreadOverTheCells) {
     Particles p{};
     p.id = id.data();
     p.position = {position.data()};
-    device.forEach(n, FindCell{p, Grid{{0, 0, 0}, 1, 1, {20, 10, 10}}, key.data()});
+    device.forEach(n, FindCell{p, Grid{{0, 0, 0}, {1, 1, 1}, {20, 10, 10}, {}}, key.data()});
     std::vector<int> keys = this->fetch(device, key);
     std::sort(keys.begin(), keys.end());
     for (int i = 1; i < n; ++i) ASSERT_NE(keys[i], keys[i - 1]);
