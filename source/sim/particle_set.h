@@ -76,7 +76,10 @@ public:
     }
     int side() const { return side_; }
     // Boundary particles have a velocity only where fluid sticks to them.
-    void carryVelocity() { velocity_.resize(vectorSize(slots_)); }
+    void carryVelocity() {
+        carriesVelocity_ = true;
+        velocity_.resize(vectorSize(slots_));
+    }
     // Particles that never move are sorted once.
     void keepOrder() {
         sortedId_.release(), key_.release(), order_.release();
@@ -122,8 +125,9 @@ private:
         id_.resize(slots);
         position_.resize(vectorSize(slots));
         pressureTerm_.resize(slots);
+        if (carriesVelocity_) velocity_.resize(vectorSize(slots));
         if (kind_ == Kind::Walls) return mass_.resize(slots);
-        for (auto* field : {&velocity_, &acceleration_}) field->resize(vectorSize(slots));
+        acceleration_.resize(vectorSize(slots));
         for (auto* field : {&density_, &inverseDensity_}) field->resize(slots);
     }
     static Particle describe(const Particles& host, int i, Vec3 origin) {
@@ -151,6 +155,7 @@ private:
 
     Device& device_;
     Kind kind_;
+    bool carriesVelocity_ = kind_ == Kind::Fluid;
     int slots_ = 0, side_ = 0;
     Buffer<int, Device> id_{device_}, sortedId_{device_}, key_{device_}, order_{device_}, cellStart_{device_};
     Buffer<real, Device> position_{device_}, velocity_{device_}, acceleration_{device_};
