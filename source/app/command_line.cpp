@@ -36,6 +36,7 @@ constexpr Shortcut Shortcuts[] = {
     {"--fps", "output.fps", "RATE", "frames and rows a second of simulated time"},
     {"--csv", "output.csv", "FILE", "time series as CSV, - = standard output"},
     {"--json", "output.json", "FILE", "time series as JSON, - = standard output"},
+    {"--checkpoint", "output.checkpoint", "FILE", "writes a file from which the run can go on"},
     {"--backend", "compute.backend", "NAME", "auto, cpu or cuda"},
     {"--threads", "compute.threads", "N", "CPU threads; all cores without it"},
     {"--device", "compute.device", "N", "number of the GPU; the one that draws without it"},
@@ -97,7 +98,8 @@ std::string whyNoWindow() {
 }
 
 int runScene(const RunOptions& options) {
-    Scene scene = chooseScene(options.scene, options.choices);
+    Start start = chooseStart(options.scene, options.choices);
+    Scene& scene = start.scene;
     if (options.printConfig) {
         writeText("-", writeScene(scene));
         return int(Exit::Ok);
@@ -111,14 +113,14 @@ int runScene(const RunOptions& options) {
 #ifdef SPINDRIFT_WINDOW
     if (!scene.output.headless) {
         const Output& output = scene.output;
-        for (const std::string& wanted : {output.screenshot, output.frames, output.csv, output.json})
+        for (const std::string& wanted : {output.screenshot, output.frames, output.csv, output.json, output.checkpoint})
             if (!wanted.empty())
                 fmt::print(stderr, "spindrift: {}: not written by the window; add --headless\n",
                            wanted);
-        return runWindow(std::move(scene));
+        return runWindow(std::move(start));
     }
 #endif
-    return runHeadless(scene, options.quiet);
+    return runHeadless(start, options.quiet);
 }
 
 // The shortcuts, in the order in which they are applied; --set comes last, so that it overrides any
@@ -177,7 +179,7 @@ CLI::App* addRun(CLI::App& app, RunOptions& options) {
     CLI::App* command =
         app.add_subcommand("run", "runs a scene, in a window or without one; the default");
     command->add_option("scene", options.scene,
-                        "scene file, or the name of a shipped scene; a dam break without it");
+                        "scene file, the name of a shipped scene, or a checkpoint; a dam break without it");
     addKnobOptions(*command, options.choices);
     command->add_flag("--print-config", options.printConfig,
                       "writes the full effective scene and ends");

@@ -3,6 +3,7 @@
 #include "app/frame.h"
 #include "app/progress.h"
 #include "core/error.h"
+#include "measure/checkpoint.h"
 #include "measure/health.h"
 #include "measure/output_file.h"
 #include "measure/time_series.h"
@@ -12,6 +13,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <optional>
 #include <set>
@@ -23,6 +25,28 @@ constexpr int DefaultSteps = 600;
 // Steps between two looks at the health of a run that measures nothing else.
 constexpr int HealthInterval = 20;
 
+// The signal that asked for an end, 0 = none.
+volatile std::sig_atomic_t stopSignal = 0;
+
+// While it lives SIGINT and SIGTERM are noted; a second one kills as usual.
+struct StopSignals {
+    StopSignals() {
+        stopSignal = 0;
+        struct sigaction action{};
+        action.sa_handler = [](int signal) { stopSignal = signal; };
+        action.sa_flags = int(SA_RESETHAND);
+        sigaction(SIGINT, &action, &before_[0]);
+        sigaction(SIGTERM, &action, &before_[1]);
+    }
+    ~StopSignals() {
+        sigaction(SIGINT, &before_[0], nullptr);
+        sigaction(SIGTERM, &before_[1], nullptr);
+    }
+
+private:
+    struct sigaction before_[2];
+};
+
 // Every output is tried before the first step: an hour of computing must not end at a missing
 // folder.
 void requireOutputs(const Output& output) {
@@ -31,7 +55,7 @@ void requireOutputs(const Output& output) {
             Exit::Output,
             "output.csv and output.json both want standard output; give one of them a file");
     std::set<std::string> files;
-    for (const std::string& file : {output.screenshot, output.csv, output.json}) {
+    for (const std::string& file : {output.screenshot, output.csv, output.json, output.checkpoint}) {
         if (file.empty() || file == "-") continue;
         requireWritable(file);
         if (!files.insert(file).second)
@@ -56,8 +80,8 @@ struct Pictures {
 
 class HeadlessRun {
 public:
-    HeadlessRun(Scene scene, bool quiet)
-        : scene_(std::move(scene)), quiet_(quiet), progress_(!quiet) {
+    HeadlessRun(const Start& start, bool quiet)
+        : scene_(start.scene), quiet_(quiet), progress_(!quiet) {
         if (scene_.compute.steps == 0 && scene_.output.time == 0)
             scene_.compute.steps = DefaultSteps;
         requireOutputs(scene_.output);
@@ -67,14 +91,15 @@ public:
             scene_ = onDrawingDevice(std::move(scene_));
         }
         sampling_ = !output.frames.empty() || !output.csv.empty() || !output.json.empty();
-        simulation_ = makeSimulation(scene_);
+        simulation_ = Start{scene_, start.state}.simulation();
     }
 
     int run() {
         try {
             now_ = simulation_->measure();
+            if (checkpointsByTime()) nextCheckpoint_ = after(now_.time, scene_.output.checkpointEvery);
             if (sampling_) sample();
-            while (!done() && trouble_.empty()) advance();
+            while (!done() && trouble_.empty() && stopSignal == 0) advance();
         } catch (...) {   // a GPU was lost, a disk is full: what was measured until then is kept
             progress_.clear();
             writeSeries();
@@ -82,6 +107,10 @@ public:
         }
         progress_.clear();
         finish();
+        if (trouble_.empty() && stopSignal != 0) {
+            fmt::print(stderr, "spindrift: stopped by a signal after {} steps\n", steps_);
+            return 128 + stopSignal;
+        }
         if (trouble_.empty()) return int(Exit::Ok);
         fmt::print(stderr, "spindrift: {}\n", trouble_);
         return int(Exit::Diverged);
@@ -100,7 +129,7 @@ private:
         simulation_->step();
         ++steps_;
         // The time is known from a measurement only, and the ends of run and frame depend on it.
-        const bool look = sampling_ || scene_.output.time > 0 || steps_ % HealthInterval == 0;
+        const bool look = sampling_ || scene_.output.time > 0 || checkpointsByTime() || steps_ % HealthInterval == 0;
         if (look) simulation_->wait();
         stepSeconds_ +=
             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -108,6 +137,7 @@ private:
         now_ = simulation_->measure();
         trouble_ = divergence(scene_, now_);
         if (sampling_ && trouble_.empty() && now_.time >= nextSample_) sample();
+        if (checkpointsByTime() && trouble_.empty() && now_.time >= nextCheckpoint_) saveCheckpoint();
         if (progress_.due()) progress_.show(share(), describe());
     }
 
@@ -130,9 +160,19 @@ private:
                               fmt::format("frame_{:05}.png", frames_++);
             pictures_->save(*simulation_, scene_, file.string());
         }
-        // Of the times k/fps the first one that is still ahead.
-        const double fps = scene_.output.fps;
-        nextSample_ = (std::floor(now_.time * fps * (1 + 1e-9)) + 1) / fps;
+        nextSample_ = after(now_.time, 1 / double(scene_.output.fps));
+    }
+
+    // Of the multiples of `every` the first one that is still ahead.
+    static double after(double time, double every) { return (std::floor(time / every * (1 + 1e-9)) + 1) * every; }
+
+    bool checkpointsByTime() const { return !scene_.output.checkpoint.empty() && scene_.output.checkpointEvery > 0; }
+    // The run goes on from what the file holds, so that whoever restarts from it gets the same bits.
+    void saveCheckpoint() {
+        const RunState state = simulation_->state();
+        writeCheckpoint(scene_.output.checkpoint, scene_, state);
+        simulation_->restart(state);
+        nextCheckpoint_ = after(now_.time, scene_.output.checkpointEvery);
     }
 
     void addRow() {
@@ -153,6 +193,8 @@ private:
         if (trouble_.empty()) trouble_ = divergence(scene_, now_);
         if (sampling_ && lastRow_ < steps_) addRow();
         writeSeries();
+        if (!output.checkpoint.empty() && trouble_.empty())
+            writeCheckpoint(output.checkpoint, scene_, simulation_->state());
         if (!output.screenshot.empty()) pictures_->save(*simulation_, scene_, output.screenshot);
         if (!quiet_) summarise();
     }
@@ -174,6 +216,7 @@ private:
                    now_.potentialEnergy);
         fmt::print(out, "density error  {:.3g} % mean, {:.3g} % largest\n", 100 * now_.densityError,
                    100 * now_.maxDensityError);
+        if (!output.checkpoint.empty() && trouble_.empty()) fmt::print(out, "checkpoint     {}\n", output.checkpoint);
         if (!output.screenshot.empty())
             fmt::print(out, "picture        {}\n",
                        std::filesystem::absolute(output.screenshot).lexically_normal().string());
@@ -191,11 +234,13 @@ private:
     std::string trouble_;  // why the run stopped early
     int64_t steps_ = 0, lastRow_ = 0;
     int frames_ = 0;
-    double nextSample_ = 0, stepSeconds_ = 0;  // s simulated; s of wall time
+    double nextSample_ = 0, nextCheckpoint_ = 0;  // s simulated
+    double stepSeconds_ = 0;                      // of wall time
+    StopSignals signals_;
 };
 
 }  // namespace
 
-int runHeadless(const Scene& scene, bool quiet) { return HeadlessRun(scene, quiet).run(); }
+int runHeadless(const Start& start, bool quiet) { return HeadlessRun(start, quiet).run(); }
 
 }  // namespace spindrift

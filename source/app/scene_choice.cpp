@@ -1,6 +1,7 @@
 #include "app/scene_choice.h"
 
 #include "core/error.h"
+#include "measure/checkpoint.h"
 #include "scene/check.h"
 #include "scene/json.h"
 #include "scene/suggest.h"
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 
 namespace spindrift {
 namespace {
@@ -47,16 +49,48 @@ std::string findScene(const std::string& name) {
                             listed(names)));
 }
 
-Scene chooseScene(const std::string& name, const std::vector<KnobChoice>& choices) {
-    const std::string file = name.empty() ? "" : findScene(name);
-    Scene scene = file.empty() ? Scene{} : loadScene(file);
+namespace {
+
+void applyChoices(Scene& scene, const std::vector<KnobChoice>& choices) {
     for (const KnobChoice& choice : choices) {
         try {
             setKnob(scene, choice.path + "=" + choice.value, choice.option);
         } catch (const Error& error) { throw Error(Exit::Usage, error.what()); }
     }
+}
+
+// The knobs that a run is built from.
+std::map<std::string, std::string> builtFrom(const Scene& scene) {
+    std::map<std::string, std::string> values;
+    for (const char* part : {"simulation", "domain", "walls", "fluid"})
+        for (const auto& [path, value] : restartKnobs(scene))
+            if (path.starts_with(std::string(part) + ".")) values[path] = value;
+    return values;
+}
+
+}  // namespace
+
+Scene chooseScene(const std::string& name, const std::vector<KnobChoice>& choices) {
+    const std::string file = name.empty() ? "" : findScene(name);
+    if (!file.empty() && isCheckpoint(file))
+        throw Error(Exit::Scene, file + ": is a checkpoint; here a scene is wanted");
+    Scene scene = file.empty() ? Scene{} : loadScene(file);
+    applyChoices(scene, choices);
     checkScene(scene, file.empty() ? "the built-in scene" : file);
     return scene;
+}
+
+Start chooseStart(const std::string& name, const std::vector<KnobChoice>& choices) {
+    std::error_code none;
+    if (!fs::is_regular_file(name, none) || !isCheckpoint(name)) return {chooseScene(name, choices), {}};
+    Checkpoint checkpoint = readCheckpoint(name);
+    const auto before = builtFrom(checkpoint.scene);
+    applyChoices(checkpoint.scene, choices);
+    for (const auto& [path, value] : builtFrom(checkpoint.scene))
+        if (const auto old = before.find(path); old == before.end() || old->second != value)
+            throw Error(Exit::Usage, path + ": can't be changed in a run that has begun; start the scene again");
+    checkScene(checkpoint.scene, name);
+    return {std::move(checkpoint.scene), std::move(checkpoint.state)};
 }
 
 }  // namespace spindrift

@@ -1,7 +1,10 @@
 #pragma once
 // From what the user typed to a scene: which file, and which knobs over it.
 #include "scene/scene.h"
+#include "sim/simulation.h"
 
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +21,15 @@ std::string findScene(const std::string& name);
 struct KnobChoice {
     std::string option, path, value;
 };
+
+// What a run starts from: a scene, and the state of a checkpoint's run.
+struct Start {
+    Scene scene;
+    std::optional<RunState> state;
+    std::unique_ptr<Simulation> simulation() const { return state ? makeSimulation(scene, *state) : makeSimulation(scene); }
+};
+// As chooseScene; `name` may also be a checkpoint, whose physics the choices can't change.
+Start chooseStart(const std::string& name, const std::vector<KnobChoice>&);
 
 // The scene of `name` ("" = the built-in default) with the choices applied in their order, checked
 // as a whole. Throws Error: Usage for a choice's mistake, else what loadScene and checkScene throw.

@@ -3,6 +3,7 @@
 #include "core/error.h"
 
 #include <fmt/format.h>
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -22,6 +23,14 @@ namespace fs = std::filesystem;
 
 std::string temporaryFor(const std::string& path) {
     return fmt::format("{}.{}.part", path, getpid());
+}
+
+// Whether the file's contents have reached the disk, so that a rename can't come before them.
+bool flushed(const std::string& path) {
+    const int file = open(path.c_str(), O_RDONLY);
+    const bool done = file >= 0 && fsync(file) == 0;
+    if (file >= 0) close(file);
+    return done;
 }
 
 // Whether all of the text reached the stream.
@@ -50,24 +59,30 @@ void requireFolder(const std::string& path) {
     requireWritable((fs::path(path) / "probe").string());
 }
 
+void replaceFile(const std::string& path, const std::function<bool(const std::string& temporary)>& write) {
+    const std::string temporary = temporaryFor(path);
+    std::error_code failed;
+    if (write(temporary) && flushed(temporary)) {
+        fs::rename(temporary, path, failed);
+        if (!failed) return;
+    }
+    fs::remove(temporary, failed);
+    refuse(path, "the file could not be completed", "is the disk full?");
+}
+
 void writeText(const std::string& path, const std::string& text) {
     if (path == "-") {
         if (!put(stdout, text))
             refuse("standard output", std::strerror(errno), "is the reader gone or the disk full?");
         return;
     }
-    const std::string temporary = temporaryFor(path);
-    std::FILE* file = std::fopen(temporary.c_str(), "wb");
-    if (!file)
-        refuse(path, std::strerror(errno), "choose a folder that exists and that you may write to");
-    const bool written = put(file, text);
-    std::error_code failed;
-    if (std::fclose(file) == 0 && written) {
-        fs::rename(temporary, path, failed);
-        if (!failed) return;
-    }
-    fs::remove(temporary, failed);
-    refuse(path, "the file could not be completed", "is the disk full?");
+    requireWritable(path);
+    replaceFile(path, [&](const std::string& temporary) {
+        std::FILE* file = std::fopen(temporary.c_str(), "wb");
+        if (!file) return false;
+        const bool written = put(file, text);
+        return std::fclose(file) == 0 && written;
+    });
 }
 
 }  // namespace spindrift

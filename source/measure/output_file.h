@@ -1,5 +1,6 @@
 #pragma once
 // Files that are there whole or not at all.
+#include <functional>
 #include <string>
 
 namespace spindrift {
@@ -11,6 +12,10 @@ void requireWritable(const std::string& path);
 // Makes the folder when it is missing and refuses one that can't be written to. Throws
 // Error(Exit::Output).
 void requireFolder(const std::string& path);
+
+// Lets `write` make a file beside its target, flushes that to the disk and renames it; write(temporary) returns whether all
+// of it was written. Throws Error(Exit::Output), and leaves what was there before.
+void replaceFile(const std::string& path, const std::function<bool(const std::string& temporary)>& write);
 
 // Writes text beside its target and renames it; "-" is standard output. Throws Error(Exit::Output).
 void writeText(const std::string& path, const std::string& text);

@@ -109,6 +109,14 @@ std::string jsonSchema() {
     return root.dump(2) + "\n";
 }
 
+std::vector<std::pair<std::string, std::string>> restartKnobs(const Scene& scene) {
+    std::vector<std::pair<std::string, std::string>> knobs;
+    visitKnobs(scene, [&](const std::string& path, const auto& value, const Knob& knob) {
+        if (!knob.live) knobs.emplace_back(path, plain(value));
+    });
+    return knobs;
+}
+
 std::string knobTable() {
     Scene scene;
     Body block, cylinder;

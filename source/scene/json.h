@@ -4,6 +4,8 @@
 #include "scene/scene.h"
 
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace spindrift {
 
@@ -20,6 +22,9 @@ std::string writeScene(const Scene&);
 // "fluid.bodies=[{...}]". Names and text need no quotes, vectors no brackets. `origin` names it in
 // messages. Throws Error(Exit::Scene); then the scene is unchanged.
 void setKnob(Scene&, const std::string& assignment, const std::string& origin = "--set");
+
+// Path and value, as text, of each knob that can't change while a run goes on.
+std::vector<std::pair<std::string, std::string>> restartKnobs(const Scene&);
 
 // Any knob's value is out of its range (a NaN, a value that didn't come from a file): throws
 // Error(Exit::Scene).

@@ -122,6 +122,8 @@ struct Output {
     std::string frames;                         // folder of a PNG sequence
     float fps = 60;                             // 1/s of simulated time
     std::string csv, json;                      // time series; "-" = standard output
+    std::string checkpoint;                     // HDF5 path: a run that can go on
+    float checkpointEvery = 0;                  // s of simulated time, 0 = at the end only
 };
 
 struct Scene {

@@ -191,6 +191,10 @@ void visitOutput(S& s, Visitor&& visit) {
           Knob{"1/s", 0.01f, 1e5f, "frames a second of simulated time", Restart});
     visit("output.csv", o.csv, Knob{"", 0, 0, "CSV time series, - = standard output", Restart});
     visit("output.json", o.json, Knob{"", 0, 0, "JSON time series, - = standard output", Restart});
+    visit("output.checkpoint", o.checkpoint,
+          Knob{"", 0, 0, "HDF5 file from which the run can go on, written at its end and when it is stopped", Restart});
+    visit("output.checkpoint_every", o.checkpointEvery,
+          Knob{"s", 0, 1e6f, "simulated time between checkpoints, 0 = at the end only", Restart});
 }
 
 }  // namespace schema

@@ -67,6 +67,9 @@ public:
 
     // Where the run stands: makeSimulation(scene, state) goes on from there, on any device.
     virtual RunState state() = 0;
+    // Goes on from a state of this run. Particles are then in the order, and neighbour lists of the age, that a new
+    // simulation of this state has: both go on with the same bits.
+    virtual void restart(const RunState&) = 0;
 
     // Time of each pass since the last resetTimes(). A CPU measures every step, a GPU the first step after resetTimes().
     virtual std::vector<PassTime> times() = 0;

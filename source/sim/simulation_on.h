@@ -27,13 +27,19 @@ public:
         : device_(std::move(device)), deviceName_(std::move(deviceName)), scene_(scene),
           fluidCount_(int(state.particles.positions.size())), wallCount_(int(state.particles.walls.size())),
           extent_(state.start), grid_(makeGrid(scene, size_t(fluidCount_) + size_t(wallCount_))) {
-        fluid_.upload(state.particles.positions, state.particles.velocities, 0);
         walls_.upload(state.particles.walls, {}, fluidCount_);
         clock_.resize(1);
-        device_.upload(clock_.data(), &state.clock, 1);
         extremes_.resize(1);
         apply(scene);
         placeWalls();
+        restart(state);
+    }
+
+    void restart(const RunState& state) override {
+        CHECK(int(state.particles.positions.size()) == fluidCount_);
+        fluid_.upload(state.particles.positions, state.particles.velocities, 0);
+        device_.upload(clock_.data(), &state.clock, 1);
+        travel_ = 1e30;
         // Density and acceleration of the first picture.
         for (Row& row : plan_)
             if (row.initial == Initial::Yes) (this->*row.run)();

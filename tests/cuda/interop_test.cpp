@@ -44,6 +44,7 @@ public:
     std::vector<Particle> particles() override { return s_.particles(); }
     Particle particle(int id) override { return s_.particle(id); }
     RunState state() override { return s_.state(); }
+    void restart(const RunState& state) override { s_.restart(state); }
     std::vector<PassTime> times() override { return s_.times(); }
     void resetTimes() override { s_.resetTimes(); }
     std::vector<double> timeSteps(int n) override { return s_.timeSteps(n); }

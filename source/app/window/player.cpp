@@ -2,8 +2,6 @@
 
 #include "core/error.h"
 #include "measure/health.h"
-#include "scene/check.h"
-#include "scene/json.h"
 
 #include <algorithm>
 #include <chrono>
@@ -39,9 +37,9 @@ void History::add(const Measurement& m) {
     for (size_t c = 0; c < std::size(curves); ++c) curves[c]->push_back(float(values[c]));
 }
 
-Player::Player(Scene s) {
-    auto simulation = makeSimulation(s);
-    begin(std::move(s), std::move(simulation));
+Player::Player(Start start) {
+    auto simulation = start.simulation();
+    begin(std::move(start.scene), std::move(simulation));
     initialCamera_ = scene.view.camera;
 }
 
@@ -61,10 +59,9 @@ void Player::begin(Scene s, std::unique_ptr<Simulation> simulation) {
 }
 
 void Player::load(const std::string& file) {
-    Scene next = loadScene(file);
-    checkScene(next, file);
-    auto simulation = makeSimulation(next);
-    begin(std::move(next), std::move(simulation));
+    Start next = chooseStart(file, {});
+    auto simulation = next.simulation();
+    begin(std::move(next.scene), std::move(simulation));
     initialCamera_ = scene.view.camera;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 // Plays a scene in real time where it can: run, pause, step, reset, load. Knows nothing of pixels.
+#include "app/scene_choice.h"
 #include "app/window/stepper.h"
 #include "scene/scene.h"
 
@@ -20,7 +21,8 @@ private:
 class Player {
 public:
     // Throws Error when the scene can't run.
-    explicit Player(Scene);
+    explicit Player(Start);
+    explicit Player(Scene s) : Player(Start{std::move(s), {}}) {}
 
     Scene scene;  // edit live knobs, then call knobsChanged()
     bool running = true;

@@ -27,7 +27,8 @@ struct Message {
 
 struct Ui {
     // Needs a current GL context.
-    Ui(Scene scene, int samples) : player(onDrawingDevice(std::move(scene))), frame(1, 1, samples) {}
+    Ui(Start start, int samples)
+        : player({onDrawingDevice(std::move(start.scene)), std::move(start.state)}), frame(1, 1, samples) {}
 
     Player player;
     Frame frame;

@@ -107,11 +107,11 @@ float scaleOf(SDL_Window* window) {
 
 class Desktop {
 public:
-    explicit Desktop(Scene scene)
-        : screen_(scene),
-          samples_((loadGl(), scene.window.samples)),
+    explicit Desktop(Start start)
+        : screen_(start.scene),
+          samples_((loadGl(), start.scene.window.samples)),
           gui_(screen_, scaleOf(screen_.window)),
-          ui_(std::move(scene), samples_) {
+          ui_(std::move(start), samples_) {
         ui_.scale = scaleOf(screen_.window);
         ui_.scenes = shippedScenes();
         ui_.noGpu = whyNoGpu(ui_.player.scene);
@@ -295,6 +295,6 @@ private:
 
 }  // namespace
 
-int runWindow(Scene scene) { return Desktop(std::move(scene)).run(); }
+int runWindow(Start start) { return Desktop(std::move(start)).run(); }
 
 }  // namespace spindrift

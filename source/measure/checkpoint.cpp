@@ -1,0 +1,181 @@
+#include "measure/checkpoint.h"
+
+#include "core/error.h"
+#include "measure/output_file.h"
+#include "scene/json.h"
+
+#include <fmt/format.h>
+#include <hdf5.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <utility>
+
+namespace spindrift {
+namespace {
+
+constexpr const char* Format = "spindrift checkpoint";
+constexpr int64_t Version = 1;
+
+// What went wrong with HDF5, without the place: the public functions add it.
+struct Trouble { const char* what; };
+
+// Owns an HDF5 identifier.
+class Handle {
+public:
+    Handle(hid_t id, herr_t (*close)(hid_t), const char* what) : id_(id), close_(close) {
+        if (id < 0) throw Trouble{what};
+    }
+    ~Handle() {
+        if (id_ >= 0) close_(id_);
+    }
+    Handle(const Handle&) = delete;
+    Handle& operator=(const Handle&) = delete;
+    operator hid_t() const { return id_; }
+    // Closing a file writes to it: the one place where it matters whether that worked.
+    void close(const char* what) {
+        if (close_(std::exchange(id_, -1)) < 0) throw Trouble{what};
+    }
+
+private:
+    hid_t id_;
+    herr_t (*close_)(hid_t);
+};
+void require(herr_t result, const char* what) {
+    if (result < 0) throw Trouble{what};
+}
+
+// HDF5 writes its errors to standard error by default.
+void beQuiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+// --- numbers and texts as attributes of the file ---
+
+void writeNumbers(hid_t file, const char* name, const std::vector<double>& values) {
+    const hsize_t n = values.size();
+    Handle space(H5Screate_simple(1, &n, nullptr), H5Sclose, name);
+    Handle attribute(H5Acreate2(file, name, H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, name);
+    require(H5Awrite(attribute, H5T_NATIVE_DOUBLE, values.data()), name);
+}
+std::vector<double> readNumbers(hid_t file, const char* name, size_t count) {
+    Handle attribute(H5Aopen(file, name, H5P_DEFAULT), H5Aclose, name);
+    Handle space(H5Aget_space(attribute), H5Sclose, name);
+    if (H5Sget_simple_extent_npoints(space) != hssize_t(count)) throw Trouble{name};
+    std::vector<double> values(count);
+    require(H5Aread(attribute, H5T_NATIVE_DOUBLE, values.data()), name);
+    for (double v : values)
+        if (!std::isfinite(v)) throw Trouble{name};
+    return values;
+}
+
+// --- arrays, checked by a checksum when they are read ---
+
+// [rows, columns] of a type, in chunks; HDF5 has no chunks of nothing.
+void writeArray(hid_t file, const char* name, hid_t stored, hid_t native, const void* data, hsize_t rows, hsize_t columns) {
+    const hsize_t size[2] = {rows, columns}, chunk[2] = {std::min<hsize_t>(rows, 1 << 16), columns};
+    Handle space(H5Screate_simple(2, size, nullptr), H5Sclose, name);
+    Handle options(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, name);
+    if (rows > 0) {
+        require(H5Pset_chunk(options, 2, chunk), name);
+        require(H5Pset_fletcher32(options), name);
+    }
+    Handle set(H5Dcreate2(file, name, stored, space, H5P_DEFAULT, options, H5P_DEFAULT), H5Dclose, name);
+    if (rows > 0) require(H5Dwrite(set, native, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), name);
+}
+template <class T> std::vector<T> readArray(hid_t file, const char* name, hid_t native, hsize_t columns) {
+    Handle set(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose, name);
+    Handle space(H5Dget_space(set), H5Sclose, name);
+    hsize_t size[2] = {0, 0};
+    if (H5Sget_simple_extent_ndims(space) != 2) throw Trouble{name};
+    H5Sget_simple_extent_dims(space, size, nullptr);
+    if (size[1] != columns || size[0] > 1'000'000'000) throw Trouble{name};
+    std::vector<T> values(size[0] * columns / (sizeof(T) / H5Tget_size(native)));
+    if (size[0] > 0) require(H5Dread(set, native, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), name);
+    return values;
+}
+
+void writeVectors(hid_t file, const char* name, const std::string& unit, const std::vector<Vec3>& v) {
+    writeArray(file, name, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, v.data(), v.size(), 3);
+    Handle set(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose, name);
+    Handle space(H5Screate(H5S_SCALAR), H5Sclose, name);
+    Handle type(H5Tcopy(H5T_C_S1), H5Tclose, name);
+    require(H5Tset_size(type, unit.size()), name);
+    Handle attribute(H5Acreate2(set, "unit", type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, name);
+    require(H5Awrite(attribute, type, unit.data()), name);
+}
+std::vector<Vec3> readVectors(hid_t file, const char* name) {
+    static_assert(sizeof(Vec3) == 3 * sizeof(float));
+    return readArray<Vec3>(file, name, H5T_NATIVE_FLOAT, 3);
+}
+
+void writeAll(hid_t file, const Scene& scene, const RunState& s) {
+    const std::string text = writeScene(scene);
+    writeArray(file, Format, H5T_STD_U8LE, H5T_NATIVE_UCHAR, text.data(), text.size(), 1);
+    writeNumbers(file, "version", {double(Version)});
+    writeNumbers(file, "clock", {s.clock.time, s.clock.dt, double(s.clock.steps)});
+    writeNumbers(file, "start",
+                 {s.start.low.x, s.start.low.y, s.start.low.z, s.start.high.x, s.start.high.y, s.start.high.z, s.start.speed});
+    writeVectors(file, "positions", "m", s.particles.positions);
+    writeVectors(file, "velocities", "m/s", s.particles.velocities);
+    writeVectors(file, "walls", "m", s.particles.walls);
+}
+
+Checkpoint readAll(hid_t file, const std::string& path) {
+    Checkpoint c;
+    const std::vector<char> text = readArray<char>(file, Format, H5T_NATIVE_UCHAR, 1);
+    if (readNumbers(file, "version", 1)[0] > double(Version))
+        throw Error(Exit::Scene, path + ": is of a newer version of the program; update it");
+    c.scene = parseScene(std::string(text.begin(), text.end()), path);
+    const std::vector<double> clock = readNumbers(file, "clock", 3);
+    c.state.clock = {clock[0], clock[1], int64_t(clock[2])};
+    const std::vector<double> start = readNumbers(file, "start", 7);
+    c.state.start = {{start[0], start[1], start[2]}, {start[3], start[4], start[5]}, start[6]};
+    c.state.particles.positions = readVectors(file, "positions");
+    c.state.particles.velocities = readVectors(file, "velocities");
+    c.state.particles.walls = readVectors(file, "walls");
+    if (c.state.particles.positions.empty() || c.state.particles.velocities.size() != c.state.particles.positions.size())
+        throw Trouble{"velocities"};
+    for (const auto* field : {&c.state.particles.positions, &c.state.particles.velocities, &c.state.particles.walls})
+        for (const Vec3& v : *field)
+            if (!std::isfinite(v.x + v.y + v.z)) throw Trouble{"numbers that are not finite"};
+    return c;
+}
+
+}  // namespace
+
+void writeCheckpoint(const std::string& path, const Scene& scene, const RunState& state) {
+    beQuiet();
+    replaceFile(path, [&](const std::string& temporary) {
+        try {
+            Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "access");
+            // The newest layout has checksums over everything that isn't data.
+            require(H5Pset_libver_bounds(access, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST), "version");
+            Handle file(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, "create");
+            writeAll(file, scene, state);
+            file.close("close");
+            return true;
+        } catch (const Trouble&) { return false; }
+    });
+}
+
+bool isCheckpoint(const std::string& path) {
+    std::ifstream stream(path, std::ios::binary);
+    char start[4] = {};
+    stream.read(start, sizeof start);
+    return std::string(start, sizeof start) == "\x89HDF";
+}
+
+Checkpoint readCheckpoint(const std::string& path) {
+    beQuiet();
+    try {
+        Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "the file");
+        if (H5Lexists(file, Format, H5P_DEFAULT) <= 0)
+            throw Error(Exit::Scene, path + ": is an HDF5 file, but no checkpoint of Spindrift; give a scene or a checkpoint");
+        return readAll(file, path);
+    } catch (const Trouble& trouble) {
+        throw Error(Exit::Scene, fmt::format("{}: the checkpoint is damaged or incomplete ({}); use an older one", path,
+                                             trouble.what));
+    }
+}
+
+}  // namespace spindrift

@@ -1,0 +1,54 @@
+// A run that is stopped and goes on is the run that is not stopped.
+#include "measure/checkpoint.h"
+#include "shell.h"
+
+namespace spindrift {
+namespace {
+
+class Restart : public Shell {
+protected:
+    const std::string Run = "test/dam_break_small --headless --backend cpu --quiet --set output.checkpoint_every=0.02 ";
+    Checkpoint read(const std::string& name) const { return readCheckpoint((folder_ / name).string()); }
+    static void expectSame(const Checkpoint& a, const Checkpoint& b) {
+        EXPECT_EQ(a.state.particles.positions, b.state.particles.positions);
+        EXPECT_EQ(a.state.particles.velocities, b.state.particles.velocities);
+        EXPECT_EQ(a.state.clock.time, b.state.clock.time);
+        EXPECT_EQ(a.state.clock.steps, b.state.clock.steps);
+    }
+};
+
+TEST_F(Restart, GoesOnWithTheSameBitsForAnyNumberOfThreads) {
+    ASSERT_EQ(call(Run + "--threads 2 --time 0.07 --checkpoint whole.h5").code, 0);
+    ASSERT_EQ(call(Run + "--threads 2 --time 0.02 --checkpoint half.h5").code, 0);
+    ASSERT_EQ(call("half.h5 --headless --quiet --threads 1 --time 0.07 --checkpoint rest.h5").code, 0);
+    expectSame(read("whole.h5"), read("rest.h5"));
+    EXPECT_GE(read("rest.h5").state.clock.time, 0.07);
+    EXPECT_LT(read("half.h5").state.clock.time, 0.03);
+}
+
+TEST_F(Restart, LiveKnobsMayChangeOthersNot) {
+    ASSERT_EQ(call(Run + "--steps 5 --checkpoint a.h5").code, 0);
+    EXPECT_EQ(call("a.h5 --headless --quiet --steps 2 --set fluid.viscosity=0.2").code, 0);
+    expectMistake("a.h5 --headless --steps 2 --set simulation.spacing=0.5", Exit::Usage,
+                  "simulation.spacing: can't be changed in a run that has begun");
+    expectMistake("explain a.h5", Exit::Scene, "is a checkpoint; here a scene is wanted");
+    std::ofstream(folder_ / "broken.h5", std::ios::binary) << slurp(folder_ / "a.h5").substr(0, 3000);
+    expectMistake("broken.h5 --headless", Exit::Scene, "the checkpoint is damaged or incomplete");
+}
+
+TEST_F(Restart, SignalsEndTheRunWithItsOutputs) {
+    for (const auto& [signal, code] : {std::pair{"TERM", 143}, {"INT", 130}}) {
+        const std::string command = "cd '" + folder_.string() + "' && { '" SPINDRIFT_PROGRAM "' " + Run +
+                                    "--time 30 --csv run.csv --checkpoint stopped.h5 2>said & } && sleep 2 && kill -" +
+                                    signal + " $! && wait $!";
+        const int status = std::system(command.c_str());
+        EXPECT_EQ(WEXITSTATUS(status), code) << signal;
+        EXPECT_NE(slurp(folder_ / "said").find("stopped by a signal after"), std::string::npos) << slurp(folder_ / "said");
+        EXPECT_GT(read("stopped.h5").state.clock.steps, 0);
+        EXPECT_GT(slurp(folder_ / "run.csv").size(), 200u);
+        fs::remove(folder_ / "stopped.h5");
+    }
+}
+
+}  // namespace
+}  // namespace spindrift
