@@ -1,7 +1,7 @@
 #pragma once
-#include <nlohmann/json.hpp>
-
 #include "scene/scene.h"
+
+#include <nlohmann/json.hpp>
 
 namespace spindrift {
 

@@ -22,32 +22,35 @@ std::string whyNoGpu(const Scene& scene) {
     return cudaProblem(deviceOf(scene));
 }
 
+// Asked before anything is taken: a GPU's memory is not swapped, and a half-built run would be of no use.
+static std::string whyTooLargeForGpu(const Scene& scene) {
+    const double GiB = 1 << 30, needed = double(estimateGpuMemory(scene)), free = double(cudaFreeMemory(deviceOf(scene)));
+    if (needed <= free) return "";
+    auto inGiB = [&](double bytes) { return std::to_string(bytes / GiB).substr(0, 5) + " GiB"; };
+    return "simulation.spacing: the particles need about " + inGiB(needed) + " of GPU memory, " + inGiB(free) + " are free";
+}
+
 // Asked for CUDA it is CUDA or an error; `auto` takes the GPU when there is one that can do what the scene asks for.
 static bool runsOnGpu(const Scene& scene) {
     if (scene.compute.backend == Backend::Cpu) return false;
-    const std::string problem = whyNoGpu(scene);
-    if (scene.compute.backend == Backend::Cuda && !problem.empty())
-        throw Error(Exit::NoDevice, "--backend cuda: " + problem + "; or use --backend cpu");
-    return problem.empty();
-}
-
-// Before anything is taken: a GPU's memory is not swapped, and a half-built run would be of no use.
-static void requireGpuMemory(const Scene& scene, int device) {
-    const double GiB = 1 << 30, needed = double(estimateGpuMemory(scene)), free = double(cudaFreeMemory(device));
-    if (needed <= free) return;
-    auto inGiB = [&](double bytes) { return std::to_string(bytes / GiB).substr(0, 5) + " GiB"; };
-    throw Error(Exit::Memory, "simulation.spacing: the particles need about " + inGiB(needed) + " of GPU memory, " +
-                                  inGiB(free) + " are free; raise it, or use --backend cpu");
+    const bool asked = scene.compute.backend == Backend::Cuda;
+    if (const std::string why = whyNoGpu(scene); !why.empty()) {
+        if (asked) throw Error(Exit::NoDevice, "--backend cuda: " + why + "; or use --backend cpu");
+        return false;
+    }
+    if (const std::string why = whyTooLargeForGpu(scene); !why.empty()) {
+        if (asked) throw Error(Exit::Memory, why + "; raise it, or use --backend cpu");
+        return false;
+    }
+    return true;
 }
 
 static std::unique_ptr<Simulation> build(const Scene& scene, const RunState* state) {
-    const int device = deviceOf(scene);
     const bool gpu = runsOnGpu(scene);
-    if (gpu) requireGpuMemory(scene, device);
     try {
         const RunState start = state ? RunState() : RunState(placeParticles(scene));
         const RunState& from = state ? *state : start;
-        if (gpu) return makeCudaSimulation(scene, from, device);
+        if (gpu) return makeCudaSimulation(scene, from, deviceOf(scene));
         return scene.compute.precision == Precision::Double ? makeDoubleSimulation(scene, from, threadCount(scene))
                                                             : makeSimdSimulation(scene, from, threadCount(scene));
     } catch (const std::bad_alloc&) {

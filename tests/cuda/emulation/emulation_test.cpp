@@ -53,6 +53,9 @@ TEST_F(EmulatedGpu, AutoTakesTheGpuWhenThereIsOne) {
     emulation::machine.devices = 0;
     EXPECT_EQ(makeSimulation(scene)->deviceName().substr(0, 3), "CPU");
     emulation::machine = {};
+    emulation::machine.memory = 1 << 20;   // too little for the scene
+    EXPECT_EQ(makeSimulation(scene)->deviceName().substr(0, 3), "CPU");
+    emulation::machine = {};
     scene.compute.precision = Precision::Double;
     EXPECT_EQ(makeSimulation(scene)->deviceName().substr(0, 3), "CPU");
 }
