@@ -46,8 +46,19 @@ void require(herr_t result, const char* what) {
     if (result < 0) throw Trouble{what};
 }
 
-// HDF5 writes its errors to standard error by default.
-void beQuiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+// HDF5 writes its errors to standard error by default, and tidies up when the program ends, where it was seen to crash after
+// reading a damaged file; all that is open here is closed here.
+void prepareLibrary() {
+    H5dont_atexit();
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+// Without the time of day: the same state gives the same file.
+Handle timelessOptions(hid_t kind, const char* what) {
+    const hid_t options = H5Pcreate(kind);
+    H5Pset_obj_track_times(options, false);
+    return Handle(options, H5Pclose, what);
+}
 
 // --- numbers and texts as attributes of the file ---
 
@@ -74,7 +85,7 @@ std::vector<double> readNumbers(hid_t file, const char* name, size_t count) {
 void writeArray(hid_t file, const char* name, hid_t stored, hid_t native, const void* data, hsize_t rows, hsize_t columns) {
     const hsize_t size[2] = {rows, columns}, chunk[2] = {std::min<hsize_t>(rows, 1 << 16), columns};
     Handle space(H5Screate_simple(2, size, nullptr), H5Sclose, name);
-    Handle options(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, name);
+    const Handle options = timelessOptions(H5P_DATASET_CREATE, name);
     if (rows > 0) {
         require(H5Pset_chunk(options, 2, chunk), name);
         require(H5Pset_fletcher32(options), name);
@@ -144,13 +155,14 @@ Checkpoint readAll(hid_t file, const std::string& path) {
 }  // namespace
 
 void writeCheckpoint(const std::string& path, const Scene& scene, const RunState& state) {
-    beQuiet();
+    prepareLibrary();
     replaceFile(path, [&](const std::string& temporary) {
         try {
             Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "access");
             // The newest layout has checksums over everything that isn't data.
             require(H5Pset_libver_bounds(access, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST), "version");
-            Handle file(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, "create");
+            const Handle options = timelessOptions(H5P_FILE_CREATE, "options");
+            Handle file(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, options, access), H5Fclose, "create");
             writeAll(file, scene, state);
             file.close("close");
             return true;
@@ -166,7 +178,7 @@ bool isCheckpoint(const std::string& path) {
 }
 
 Checkpoint readCheckpoint(const std::string& path) {
-    beQuiet();
+    prepareLibrary();
     try {
         Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "the file");
         if (H5Lexists(file, Format, H5P_DEFAULT) <= 0)
