@@ -22,6 +22,7 @@ constexpr double BytesPerParticle = 400;
 constexpr double BytesPerCell = 16;
 // On a GPU: state, sorted copies, sort and vertices; boundary particles have no velocity. Cells: two starts and a count.
 constexpr double GpuBytesPerParticle = 136, GpuBytesPerWall = 76, GpuBytesPerCell = 13;
+constexpr double HostBytesPerGpuParticle = 100;
 constexpr double GpuBytesAnyway = 64 << 20;
 // Particle ids are 32-bit; walls and fluid together stay clear of the limit.
 constexpr int64_t MostParticles = 1'000'000'000;
@@ -170,6 +171,8 @@ double mostCells(const Scene& scene, double particles) {
 int64_t estimateMemory(const Scene& scene) {
     const ParticleCount count = countParticles(scene);
     const double particles = double(count.fluid) + double(count.walls);
+    // A GPU's run keeps nothing here, but passes through.
+    if (scene.compute.backend == Backend::Cuda) return int64_t(HostBytesPerGpuParticle * particles);
     const double bytes = BytesPerParticle * particles + BytesPerCell * mostCells(scene, particles);
     return int64_t(std::min(bytes, 9e18));
 }

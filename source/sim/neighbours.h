@@ -78,7 +78,9 @@ HD inline void forNeighbours(const View& v, const Neighbourhood& near, int, Vect
         const real gapZ = rowGap(xi.z, ownZ, z, g.low.z, rowSizeZ);
         for (int y = y0; y <= y1; ++y) {
             const real gapY = rowGap(xi.y, ownY, y, g.low.y, rowSizeY);
-            const real left = squareRoot(max(v.c.support2 - gapY * gapY - gapZ * gapZ, real(0)));
+            const real left2 = v.c.support2 - gapY * gapY - gapZ * gapZ;
+            if (left2 <= 0) continue;
+            const real left = squareRoot(left2);
             const int* row = near.cellStart + g.row(y, z);
             forStretches(g.cellX(xi.x - left), g.cellX(xi.x + left), g.cells.x, [&](int first, int last) {
                 for (int j = row[first], end = row[last + 1]; j < end; ++j) {

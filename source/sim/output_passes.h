@@ -53,7 +53,7 @@ template <class Value> struct CountValues {
     HD_OUT int bin(int i) const {
         if (p.id[i] < 0) return -1;
         const float share = (float(Value::of(p, i)) - range.low) / (range.high - range.low);
-        return share >= 0 && share <= 1 ? int(share * (bins - 1)) : -1;
+        return share >= 0 ? int((share < 1 ? share : 1) * (bins - 1)) : -1;   // division may round up a bit
     }
 };
 

@@ -217,7 +217,7 @@ struct Integrate {
     }
     HD static void wrap(R& x, real period) { x = x - R(period) * roundDown(x * R(1 / period)); }
     HD void bounce(R& x, real low, real high, R& normal, R& tangent1, R& tangent2) const {
-        const R inside = min(max(x, R(low)), R(high));
+        const R inside = min(R(high), max(R(low), x));   // in this order what is no number stays none
         const R depth = (x - inside) * (x - inside);
         const auto hit = depth > R(0);
         normal = select(hit, R(-v.c.restitution) * normal, normal);

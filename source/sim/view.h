@@ -55,13 +55,12 @@ struct Grid {
 // Calls f(first, last) for the stretches of cells of one row that [first, last] stands for: two of them where it reaches over
 // the end of a periodic row, never a cell twice.
 template <class F> HD inline void forStretches(int first, int last, int n, const F& f) {
-    if (last - first + 1 >= n) return f(0, n - 1);
+    int beyond = -1;   // where the stretch ends that goes on from cell 0
+    if (last - first + 1 >= n) first = 0, last = n - 1;
     if (first < 0) first += n, last += n;
-    if (last >= n) {
-        f(0, last - n);
-        last = n - 1;
-    }
-    f(first, last);
+    if (last >= n) beyond = last - n, last = n - 1;
+    // One call, so that f is inlined once.
+    for (int k = beyond < 0; k < 2; ++k) f(k ? first : 0, k ? last : beyond);
 }
 
 // The clusters of another set that may hold neighbours of one cluster (SIMD lanes only): all that are near enough for the

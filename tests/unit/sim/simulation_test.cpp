@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace spindrift {
 namespace {
 
@@ -89,6 +91,19 @@ TEST(Box, NobodyLeavesAndRestitutionHolds) {
         fastestBack = std::min(fastestBack, one.velocity.x);
     }
     EXPECT_NEAR(fastestBack, -1, 1e-5);
+}
+
+// It would look like one at the wall, and all of them together would take forever.
+TEST(Box, WhoIsNowhereStaysNowhere) {
+    Placement p = apart();
+    p.velocities[3] = {NAN, 0, 0};
+    for (Precision precision : {Precision::Float, Precision::Double}) {
+        const auto simulation = precision == Precision::Float ? makeSimdSimulation(calm(), p, 2) : makeDoubleSimulation(calm(), p, 2);
+        simulation->step();
+        EXPECT_TRUE(std::isnan(simulation->particle(3).position.x));
+        EXPECT_FALSE(std::isnan(simulation->particle(999).position.x));
+        EXPECT_FALSE(simulation->measure().finite);
+    }
 }
 
 TEST(Stir, DragsTheFluidInItsSphereOnly) {
