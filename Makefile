@@ -43,7 +43,7 @@ sanitize: install
 	@test -f build-sanitize/build.ninja || cmake -S . -B build-sanitize -G Ninja --log-level=WARNING \
 		-DSPINDRIFT_CUDA=OFF -DSPINDRIFT_SANITIZE=address,undefined
 	@cmake --build build-sanitize --target unit_tests determinism_tests render_tests emulated_cuda_tests
-	ctest --test-dir build-sanitize --output-on-failure -j 2 -LE "physics|app|emulated_unit"
+	LSAN_OPTIONS=suppressions=$(CURDIR)/tests/lsan.supp ctest --test-dir build-sanitize --output-on-failure -j 2 -LE "physics|app|emulated_unit"
 
 install:
 	@third_party/install.sh
