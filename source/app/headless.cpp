@@ -91,7 +91,7 @@ public:
             scene_ = onDrawingDevice(std::move(scene_));
         }
         sampling_ = !output.frames.empty() || !output.csv.empty() || !output.json.empty();
-        simulation_ = Start{scene_, start.state}.simulation();
+        simulation_ = startSimulation(scene_, start.state);
     }
 
     int run() {

@@ -80,6 +80,10 @@ Scene chooseScene(const std::string& name, const std::vector<KnobChoice>& choice
     return scene;
 }
 
+std::unique_ptr<Simulation> startSimulation(const Scene& scene, const std::optional<RunState>& state) {
+    return state ? makeSimulation(scene, *state) : makeSimulation(scene);
+}
+
 Start chooseStart(const std::string& name, const std::vector<KnobChoice>& choices) {
     std::error_code none;
     if (!fs::is_regular_file(name, none) || !isCheckpoint(name)) return {chooseScene(name, choices), {}};

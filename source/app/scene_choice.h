@@ -26,8 +26,10 @@ struct KnobChoice {
 struct Start {
     Scene scene;
     std::optional<RunState> state;
-    std::unique_ptr<Simulation> simulation() const { return state ? makeSimulation(scene, *state) : makeSimulation(scene); }
 };
+// The simulation of a scene, from its beginning or from a state.
+std::unique_ptr<Simulation> startSimulation(const Scene&, const std::optional<RunState>&);
+
 // As chooseScene; `name` may also be a checkpoint, whose physics the choices can't change.
 Start chooseStart(const std::string& name, const std::vector<KnobChoice>&);
 

@@ -128,23 +128,24 @@ private:
     // The passes that this scene needs, in order. What it doesn't need isn't in the list.
     template <class K> void makePlan() {
         using S = SimulationOn;
-        plan_.clear(), rows_.clear();
-        plan("sort", &S::sortFluid, Initial::Yes);
-        plan("neighbours", &S::findNeighbours, Initial::Yes, keepsLists ? "" : "rows of cells are walked instead of lists");
-        plan("density", &S::template onFluid<ComputeDensity<K>>, Initial::Yes);
-        plan("walls", fluidSticks() ? &S::template onWalls<ExtrapolateToWalls<K, true>>
+        plan_.clear();
+        rows_.clear();
+        addPass("sort", &S::sortFluid, Initial::Yes);
+        addPass("neighbours", &S::findNeighbours, Initial::Yes, keepsLists ? "" : "rows of cells are walked instead of lists");
+        addPass("density", &S::template onFluid<ComputeDensity<K>>, Initial::Yes);
+        addPass("walls", fluidSticks() ? &S::template onWalls<ExtrapolateToWalls<K, true>>
                                     : &S::template onWalls<ExtrapolateToWalls<K, false>>, Initial::Yes, whyNoWallPressure());
-        plan("forces", chooseTerms(scene_, [](auto terms) { return forces<K>(terms); }, TermList<PressureForce>{},
+        addPass("forces", chooseTerms(scene_, [](auto terms) { return forces<K>(terms); }, TermList<PressureForce>{},
                                    OptionalTerms{}), Initial::Yes);
         noteTerms(OptionalTerms{});
-        plan("extremes", &S::findExtremes, Initial::No,
+        addPass("extremes", &S::findExtremes, Initial::No,
              keepsLists || constants_.fixedStep <= 0 ? "" : "the time step is fixed (time.mode)");
-        plan("time step", &S::chooseTimeStep);
-        plan("stir", &S::template onFluid<StirFluid>, Initial::No, stir_.radius > 0 ? "" : "nobody stirs");
-        plan("integrate", &S::template onFluid<Integrate>);
+        addPass("time step", &S::chooseTimeStep);
+        addPass("stir", &S::template onFluid<StirFluid>, Initial::No, stir_.radius > 0 ? "" : "nobody stirs");
+        addPass("integrate", &S::template onFluid<Integrate>);
         for (Row& row : plan_) row.time = timeOf(row.name);
     }
-    void plan(const char* name, void (SimulationOn::*run)(), Initial initial = Initial::No, const char* skipped = "") {
+    void addPass(const char* name, void (SimulationOn::*run)(), Initial initial = Initial::No, const char* skipped = "") {
         rows_.push_back({name, skipped});
         if (!*skipped) plan_.push_back({name, run, initial});
     }

@@ -38,7 +38,7 @@ void History::add(const Measurement& m) {
 }
 
 Player::Player(Start start) {
-    auto simulation = start.simulation();
+    auto simulation = startSimulation(start.scene, start.state);
     begin(std::move(start.scene), std::move(simulation));
     initialCamera_ = scene.view.camera;
 }
@@ -60,7 +60,7 @@ void Player::begin(Scene s, std::unique_ptr<Simulation> simulation) {
 
 void Player::load(const std::string& file) {
     Start next = chooseStart(file, {});
-    auto simulation = next.simulation();
+    auto simulation = startSimulation(next.scene, next.state);
     begin(std::move(next.scene), std::move(simulation));
     initialCamera_ = scene.view.camera;
 }
