@@ -5,6 +5,7 @@
 #include "app/explain.h"
 #include "app/headless.h"
 #include "app/scene_choice.h"
+#include "app/validate.h"
 #include "core/error.h"
 #include "measure/output_file.h"
 #include "scene/json.h"
@@ -123,6 +124,18 @@ int runScene(const RunOptions& options) {
     return runHeadless(start, options.quiet);
 }
 
+void addSetOption(CLI::App& command, std::vector<KnobChoice>& choices) {
+    command
+        .add_option_function<std::vector<std::string>>(
+            "--set",
+            [&](const std::vector<std::string>& sets) {
+                for (const std::string& set : sets) choices.push_back(setChoice(set));
+            },
+            "sets any knob; may be repeated")
+        ->type_name("PATH=VALUE")
+        ->allow_extra_args(false);
+}
+
 // The shortcuts, in the order in which they are applied; --set comes last, so that it overrides any
 // of them.
 void addKnobOptions(CLI::App& command, std::vector<KnobChoice>& choices) {
@@ -164,15 +177,7 @@ void addKnobOptions(CLI::App& command, std::vector<KnobChoice>& choices) {
             choices.push_back({"--headless", "output.headless", "true"});
         },
         "runs without a window");
-    command
-        .add_option_function<std::vector<std::string>>(
-            "--set",
-            [&](const std::vector<std::string>& sets) {
-                for (const std::string& set : sets) choices.push_back(setChoice(set));
-            },
-            "sets any knob; may be repeated")
-        ->type_name("PATH=VALUE")
-        ->allow_extra_args(false);
+    addSetOption(command, choices);
 }
 
 CLI::App* addRun(CLI::App& app, RunOptions& options) {
@@ -224,6 +229,19 @@ CLI::App* addBench(CLI::App& app, BenchOptions& options) {
     return command;
 }
 
+CLI::App* addValidate(CLI::App& app, ValidateOptions& options) {
+    CLI::App* command =
+        app.add_subcommand("validate", "runs flows with known answers and says how wrong they are, and what that cost");
+    command->add_option("cases", options.cases, "names of cases; all without them");
+    command->add_flag("--list", options.list, "names the cases and ends");
+    command->add_flag("--quick", options.quick, "coarse runs of some cases, two minutes");
+    command->add_option("--resolution", options.resolutions, "instead of the case's own; may be repeated")->type_name("N")
+        ->check(CLI::Range(4, 100000))->allow_extra_args(false);
+    command->add_option("--out", options.out, "folder for validation.json and a chart of each run")->type_name("FOLDER");
+    addSetOption(*command, options.choices);
+    return command;
+}
+
 // Everything that isn't the name of a command or a general option belongs to `run`.
 std::vector<std::string> withCommand(int argc, const char* const* argv, const CLI::App& app) {
     std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
@@ -251,6 +269,8 @@ int runCommandLine(int argc, const char* const* argv) {
     const CLI::App* compareCommand = addCompare(app, comparison);
     BenchOptions benchmark;
     const CLI::App* benchCommand = addBench(app, benchmark);
+    ValidateOptions validation;
+    const CLI::App* validateCommand = addValidate(app, validation);
     const CLI::App* schemaCommand =
         app.add_subcommand("schema", "writes the JSON Schema of scene files");
     app.set_help_flag();
@@ -266,6 +286,7 @@ int runCommandLine(int argc, const char* const* argv) {
     if (*explainCommand) return explain(chooseScene(explained.scene, explained.choices));
     if (*compareCommand) return compare(comparison);
     if (*benchCommand) return bench(benchmark);
+    if (*validateCommand) return validate(validation);
     if (*schemaCommand) writeText("-", jsonSchema());
     return int(Exit::Ok);
 }

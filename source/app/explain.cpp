@@ -27,7 +27,13 @@ std::map<std::string, double> timePasses(Simulation& simulation, int steps) {
 }
 
 const char* describe(Formulation f) {
-    return f == Formulation::Classic ? "classic" : "weakly compressible";
+    switch (f) {
+        case Formulation::Wcsph: return "weakly compressible";
+        case Formulation::DeltaSph: return "delta-SPH";
+        case Formulation::TransportVelocity: return "transport velocity";
+        case Formulation::Classic: return "classic";
+    }
+    return "";
 }
 const char* describe(Kernel k) { return k == Kernel::WendlandC2 ? "Wendland C2" : "cubic spline"; }
 

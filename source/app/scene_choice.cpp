@@ -26,6 +26,8 @@ fs::path configs() {
 
 }  // namespace
 
+std::string configsFolder() { return configs().string(); }
+
 std::vector<std::string> shippedScenes() {
     std::vector<std::string> names;
     std::error_code none;
@@ -49,8 +51,6 @@ std::string findScene(const std::string& name) {
                             listed(names)));
 }
 
-namespace {
-
 void applyChoices(Scene& scene, const std::vector<KnobChoice>& choices) {
     for (const KnobChoice& choice : choices) {
         try {
@@ -58,6 +58,8 @@ void applyChoices(Scene& scene, const std::vector<KnobChoice>& choices) {
         } catch (const Error& error) { throw Error(Exit::Usage, error.what()); }
     }
 }
+
+namespace {
 
 // The knobs that a run is built from.
 std::map<std::string, std::string> builtFrom(const Scene& scene) {

@@ -12,6 +12,8 @@ namespace spindrift {
 
 // Names of the scenes in configs/, as findScene takes them.
 std::vector<std::string> shippedScenes();
+// The folder that the shipped scenes are in.
+std::string configsFolder();
 
 // The path of a scene file: `name` itself, or the shipped scene of that name ("pool_drop",
 // "test/ball_drop_small"). Throws Error(Exit::Scene) naming the nearest shipped scene.
@@ -28,6 +30,9 @@ struct Start {
     std::optional<RunState> state;
 };
 // The simulation of a scene, from its beginning or from a state.
+// Sets the knobs, in order. Throws Error (Usage).
+void applyChoices(Scene&, const std::vector<KnobChoice>&);
+
 std::unique_ptr<Simulation> startSimulation(const Scene&, const std::optional<RunState>&);
 
 // As chooseScene; `name` may also be a checkpoint, whose physics the choices can't change.

@@ -8,7 +8,7 @@ namespace spindrift {
 // What the process returns to the shell; each kind of mistake has its own number (README, "Exit codes").
 enum class Exit {
     Ok = 0,
-    Different = 1,      // `compare` found the pictures different
+    Different = 1,      // `compare` found the pictures different, `validate` an error above its target
     Usage = 2,          // command line: unknown option, bad value
     Scene = 3,          // scene file: missing, malformed, unknown key, value out of range
     Output = 4,         // a file could not be written

@@ -40,6 +40,19 @@ template <class R> HD inline Vector<R> addScaled(Vector<R> a, R s, Vector<R> b) 
 template <class R> HD inline Vector<R> subtractScaled(Vector<R> a, R s, Vector<R> b) {
     return {negMulAdd(s, b.x, a.x), negMulAdd(s, b.y, a.y), negMulAdd(s, b.z, a.z)};
 }
+// A symmetric matrix.
+template <class R> struct Symmetric { R xx, yy, zz, xy, xz, yz; };
+template <class R> HD inline Symmetric<R> addOuter(Symmetric<R> m, R s, Vector<R> r) {
+    const Vector<R> sr = s * r;
+    return {mulAdd(sr.x, r.x, m.xx), mulAdd(sr.y, r.y, m.yy), mulAdd(sr.z, r.z, m.zz),
+            mulAdd(sr.x, r.y, m.xy), mulAdd(sr.x, r.z, m.xz), mulAdd(sr.y, r.z, m.yz)};
+}
+template <class R> HD inline Vector<R> operator*(Symmetric<R> m, Vector<R> v) {
+    return {dot(Vector<R>{m.xx, m.xy, m.xz}, v), dot(Vector<R>{m.xy, m.yy, m.yz}, v), dot(Vector<R>{m.xz, m.yz, m.zz}, v)};
+}
+template <class R> HD inline Symmetric<R> total(Symmetric<R> m) {
+    return {total(m.xx), total(m.yy), total(m.zz), total(m.xy), total(m.xz), total(m.yz)};
+}
 template <class R> HD inline Vector<R> total(Vector<R> sum) { return {total(sum.x), total(sum.y), total(sum.z)}; }
 
 // One number a particle, and three numbers a particle. Three are stored cluster by cluster, x x x x y y y y z z z z

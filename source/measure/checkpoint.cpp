@@ -16,7 +16,7 @@ namespace spindrift {
 namespace {
 
 constexpr const char* Format = "spindrift checkpoint";
-constexpr int64_t Version = 1;
+constexpr int64_t Version = 2;   // 2: densities, where they are carried
 
 // What went wrong with HDF5, without the place: the public functions add it.
 struct Trouble { const char* what; };
@@ -105,14 +105,17 @@ template <class T> std::vector<T> readArray(hid_t file, const char* name, hid_t 
     return values;
 }
 
-void writeVectors(hid_t file, const char* name, const std::string& unit, const std::vector<Vec3>& v) {
-    writeArray(file, name, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, v.data(), v.size(), 3);
+void writeFloats(hid_t file, const char* name, const std::string& unit, const void* data, size_t rows, hsize_t columns) {
+    writeArray(file, name, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, data, rows, columns);
     Handle set(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose, name);
     Handle space(H5Screate(H5S_SCALAR), H5Sclose, name);
     Handle type(H5Tcopy(H5T_C_S1), H5Tclose, name);
     require(H5Tset_size(type, unit.size()), name);
     Handle attribute(H5Acreate2(set, "unit", type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, name);
     require(H5Awrite(attribute, type, unit.data()), name);
+}
+void writeVectors(hid_t file, const char* name, const std::string& unit, const std::vector<Vec3>& v) {
+    writeFloats(file, name, unit, v.data(), v.size(), 3);
 }
 std::vector<Vec3> readVectors(hid_t file, const char* name) {
     static_assert(sizeof(Vec3) == 3 * sizeof(float));
@@ -129,6 +132,7 @@ void writeAll(hid_t file, const Scene& scene, const RunState& s) {
     writeVectors(file, "positions", "m", s.particles.positions);
     writeVectors(file, "velocities", "m/s", s.particles.velocities);
     writeVectors(file, "walls", "m", s.particles.walls);
+    if (!s.densities.empty()) writeFloats(file, "densities", "kg/m^3", s.densities.data(), s.densities.size(), 1);
 }
 
 Checkpoint readAll(hid_t file, const std::string& path) {
@@ -144,8 +148,12 @@ Checkpoint readAll(hid_t file, const std::string& path) {
     c.state.particles.positions = readVectors(file, "positions");
     c.state.particles.velocities = readVectors(file, "velocities");
     c.state.particles.walls = readVectors(file, "walls");
+    if (carriesDensity(c.scene)) c.state.densities = readArray<float>(file, "densities", H5T_NATIVE_FLOAT, 1);
     if (c.state.particles.positions.empty() || c.state.particles.velocities.size() != c.state.particles.positions.size())
         throw Trouble{"velocities"};
+    if (carriesDensity(c.scene) && c.state.densities.size() != c.state.particles.positions.size()) throw Trouble{"densities"};
+    for (float rho : c.state.densities)
+        if (!(std::isfinite(rho) && rho > 0)) throw Trouble{"densities"};
     for (const auto* field : {&c.state.particles.positions, &c.state.particles.velocities, &c.state.particles.walls})
         for (const Vec3& v : *field)
             if (!std::isfinite(v.x + v.y + v.z)) throw Trouble{"numbers that are not finite"};

@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "scene/json.h"
 #include "scene/particles.h"
+#include "scene/schema.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -20,8 +21,8 @@ namespace {
 constexpr double BytesPerParticle = 400;
 // Start and fill counters of one grid cell.
 constexpr double BytesPerCell = 16;
-// On a GPU: state, sorted copies, sort and vertices; boundary particles have no velocity. Cells: two starts and a count.
-constexpr double GpuBytesPerParticle = 136, GpuBytesPerWall = 76, GpuBytesPerCell = 13;
+// On a GPU: state, sorted copies, sort and vertices; what carried density and shifting add; boundary particles have no velocity. Cells: two starts and a count.
+constexpr double GpuBytesPerParticle = 136, GpuBytesPerCarried = 8, GpuBytesPerShifted = 32, GpuBytesPerWall = 76, GpuBytesPerCell = 13;
 constexpr double HostBytesPerGpuParticle = 100;
 constexpr double GpuBytesAnyway = 64 << 20;
 // Particle ids are 32-bit; walls and fluid together stay clear of the limit.
@@ -82,6 +83,33 @@ void checkDomain(const Scene& scene) {
     const bool periodic = scene.domain.periodicX || scene.domain.periodicY || scene.domain.periodicZ;
     if (scene.simulation.formulation == Formulation::Classic && (dimensions == 2 || periodic))
         refuse("simulation.formulation", "the classic one has three dimensions and walls all round; use wcsph");
+}
+
+// Shifting spreads particles evenly over all the space it finds, and the pressure's gradient does not feel a surface.
+void checkFills(const Scene& scene) {
+    if (scene.simulation.formulation != Formulation::TransportVelocity) return;
+    const Vec3d size = toDouble(scene.domain.max) - toDouble(scene.domain.min);
+    const double dx = scene.simulation.spacing, depth = scene.simulation.dimensions == 2 ? dx : size.z;
+    const double filled = double(countParticles(scene).fluid) * dx * dx * dx / (size.x * size.y * depth);
+    if (filled < 0.9)
+        refuse("simulation.formulation",
+               fmt::format("transport_velocity has no free surfaces, and fluid fills {:.0f} % of the domain; use delta_sph "
+                           "or wcsph, or fill it", 100 * filled));
+}
+
+void checkMovingFace(const Scene& scene) {
+    const Walls& walls = scene.walls;
+    if (walls.movingFace == Face::None) return;
+    const int axis = (int(walls.movingFace) - 1) / 2;
+    if (axis >= scene.simulation.dimensions || scene.domain.periodic(axis))
+        refuse("walls.moving_face", fmt::format("there is no wall at {}; name a face that has one",
+                                                enumNames(Face())[size_t(walls.movingFace)]));
+    if (walls.velocity[axis] != 0)
+        refuse("walls.velocity", fmt::format("{} = {} m/s leads out of the face; a face slides along itself", "xyz"[axis],
+                                             walls.velocity[axis]));
+    if (walls.kind != WallKind::Particles || scene.fluid.viscosity <= 0 || scene.simulation.formulation == Formulation::Classic)
+        refuse("walls.moving_face", "nothing sticks to it; it needs walls.kind particles, a fluid.viscosity above 0, and any "
+                                    "formulation but the classic one");
 }
 
 void checkBody(const Scene& scene, size_t index) {
@@ -180,7 +208,9 @@ int64_t estimateMemory(const Scene& scene) {
 int64_t estimateGpuMemory(const Scene& scene) {
     const ParticleCount count = countParticles(scene);
     const double fluid = double(count.fluid), walls = double(count.walls);
-    const double bytes = GpuBytesPerParticle * fluid + GpuBytesPerWall * walls +
+    const double more = (carriesDensity(scene) ? GpuBytesPerCarried : 0) +
+                        (scene.simulation.formulation == Formulation::TransportVelocity ? GpuBytesPerShifted : 0);
+    const double bytes = (GpuBytesPerParticle + more) * fluid + GpuBytesPerWall * walls +
                          GpuBytesPerCell * mostCells(scene, fluid + walls) + GpuBytesAnyway;
     return int64_t(std::min(bytes, 9e18));
 }
@@ -192,6 +222,8 @@ void checkScene(const Scene& scene, const std::string& place) {
         if (scene.fluid.bodies.empty())
             refuse("fluid.bodies", "is empty; add a body of fluid, e.g. {\"shape\": \"block\"}");
         for (size_t b = 0; b < scene.fluid.bodies.size(); ++b) checkBody(scene, b);
+        checkFills(scene);
+        checkMovingFace(scene);
         if (scene.view.range == RangeMode::Fixed && scene.view.rangeMin >= scene.view.rangeMax)
             refuse("view.range_max",
                    fmt::format("{} is not above view.range_min {}; make it larger",

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <random>
 
 namespace spindrift {
 namespace {
@@ -137,17 +138,73 @@ void placeShell(const Shell& shell, std::vector<Vec3>& out) {
             }
 }
 
-// At p, relative to domain.min. Taylor and Green 1937, one wave length along each side of the domain.
-Vec3 startVelocity(const Scene& scene, const Body& body, Vec3d p) {
-    if (body.field == Field::Uniform) return body.velocity;
+// What the fluid does at the start at one point: m/s, Pa.
+struct Start { Vec3d velocity; double pressure = 0; };
+
+// Taylor and Green 1937, one wave length along each side of the domain.
+Start taylorGreen(const Scene& scene, double amplitude, Vec3d p) {
     const Vec3d size = domainSize(scene);
-    const double amplitude = length(toDouble(body.velocity)), turn = 2 * std::numbers::pi;
-    const double x = turn * p.x / size.x, y = turn * p.y / size.y;
-    return toFloat(amplitude * Vec3d{-std::cos(x) * std::sin(y), std::sin(x) * std::cos(y), 0});
+    const double turn = 2 * std::numbers::pi, x = turn * p.x / size.x, y = turn * p.y / size.y;
+    return {amplitude * Vec3d{-std::cos(x) * std::sin(y), std::sin(x) * std::cos(y), 0},
+            -0.25 * scene.fluid.restDensity * amplitude * amplitude * (std::cos(2 * x) + std::cos(2 * y))};
 }
 
+// Linear in the distance from the body's centre. A stretching drop in a central force field has its exact pressure
+// (Monaghan and Rafiee 2013), which is 0 on its surface.
+Start linearField(const Scene& scene, const Body& body, double amplitude, Vec3d r) {
+    const Vec3d half = halfExtent(body);
+    const double reach = std::max(half.x, half.y), rate = amplitude / reach, omega = scene.simulation.centralRate;
+    if (body.field == Field::Rotation) return {rate * Vec3d{-r.y, r.x, 0}};
+    if (body.field == Field::Shear) return {rate * Vec3d{r.y, 0, 0}};
+    const double depth = reach * reach - r.x * r.x - r.y * r.y;   // m^2
+    return {rate * Vec3d{r.x, -r.y, 0}, 0.5 * scene.fluid.restDensity * (rate * rate + omega * omega) * std::max(depth, 0.0)};
+}
+
+// Of the fluid above p in the same body, for a free surface at that body's upper end against gravity.
+double hydrostatic(const Scene& scene, const Body& body, Vec3d r) {
+    const Vec3d g = toDouble(scene.simulation.gravity), half = halfExtent(body);
+    double head = 0;   // m^2/s^2
+    for (int k = 0; k < scene.simulation.dimensions; ++k) head += g[k] * r[k] + std::abs(g[k]) * half[k];
+    return scene.fluid.restDensity * head;
+}
+
+Vec3d centerOf(const Scene& scene, const Body& body) {
+    const Vec3d center = body.shape == Shape::Block ? 0.5 * (toDouble(body.min) + toDouble(body.max)) : toDouble(body.center);
+    return center - toDouble(scene.domain.min);
+}
+
+// At p, relative to domain.min.
+Start startOf(const Scene& scene, const Body& body, Vec3d p) {
+    const Vec3d r = p - centerOf(scene, body);
+    const double amplitude = length(toDouble(body.velocity));
+    Start start{toDouble(body.velocity)};
+    if (body.field == Field::TaylorGreen) start = taylorGreen(scene, amplitude, p);
+    else if (body.field != Field::Uniform) start = linearField(scene, body, amplitude, r);
+    if (body.pressure == StartPressure::Hydrostatic) start.pressure += hydrostatic(scene, body, r);
+    return start;
+}
+
+// Uniform in [-reach, reach] along each axis that the scene has. The same numbers from every standard library.
+class Jitter {
+public:
+    explicit Jitter(const Scene& scene)
+        : random_(unsigned(scene.simulation.seed)), dimensions_(scene.simulation.dimensions),
+          reach_(double(scene.simulation.jitter) * double(scene.simulation.spacing)) {}
+    Vec3d next() {
+        Vec3d d{0, 0, 0};
+        if (reach_ == 0) return d;
+        for (int k = 0; k < dimensions_; ++k) d[k] = reach_ * (2 * (random_() + 0.5) / 4294967296.0 - 1);
+        return d;
+    }
+
+private:
+    std::mt19937 random_;
+    int dimensions_;
+    double reach_;   // m
+};
+
 // Appends the points of body `b` that are not in an earlier body.
-void placeBody(const Scene& scene, const std::vector<Lattice>& lattices, size_t b, Placement& out) {
+void placeBody(const Scene& scene, const std::vector<Lattice>& lattices, size_t b, Jitter& jitter, Placement& out) {
     const std::vector<Body>& bodies = scene.fluid.bodies;
     const Vec3d origin = toDouble(scene.domain.min);
     const double halfSpacing = 0.5 * double(scene.simulation.spacing);
@@ -160,8 +217,11 @@ void placeBody(const Scene& scene, const std::vector<Lattice>& lattices, size_t 
                 for (size_t e = 0; e < b && free; ++e)
                     free = !contains(bodies[e], lattices[e], origin, p, halfSpacing);
                 if (!free) continue;
-                out.positions.push_back(toFloat(p));
-                out.velocities.push_back(startVelocity(scene, bodies[b], p));
+                const Vec3d place = p + jitter.next();
+                const Start start = startOf(scene, bodies[b], place);
+                out.positions.push_back(toFloat(place));
+                out.velocities.push_back(toFloat(start.velocity));
+                out.pressures.push_back(float(start.pressure));
             }
 }
 
@@ -175,6 +235,11 @@ float particleMass(const Scene& scene) {
     if (scene.fluid.particleMass > 0) return scene.fluid.particleMass;
     const float dx = scene.simulation.spacing;
     return scene.fluid.restDensity * dx * dx * dx;
+}
+
+bool carriesDensity(const Scene& scene) {
+    const Formulation f = scene.simulation.formulation;
+    return f == Formulation::DeltaSph || f == Formulation::TransportVelocity;
 }
 
 int64_t latticePlanes(const Scene& scene, const Body& body, int axis) {
@@ -195,9 +260,36 @@ Placement placeParticles(const Scene& scene) {
     const size_t expected = size_t(countParticles(scene).fluid);
     out.positions.reserve(expected);
     out.velocities.reserve(expected);
-    for (size_t b = 0; b < lattices.size(); ++b) placeBody(scene, lattices, b, out);
+    out.pressures.reserve(expected);
+    Jitter jitter(scene);
+    for (size_t b = 0; b < lattices.size(); ++b) placeBody(scene, lattices, b, jitter, out);
     if (scene.walls.kind == WallKind::Particles) placeShell(wallShell(scene), out.walls);
     return out;
+}
+
+FluidExtent extentOf(const Placement& p) {
+    FluidExtent e;
+    for (size_t i = 0; i < p.positions.size(); ++i) {
+        for (int k = 0; k < 3; ++k) {
+            e.low[k] = std::min<double>(e.low[k], p.positions[i][k]);
+            e.high[k] = std::max<double>(e.high[k], p.positions[i][k]);
+        }
+        e.speed = std::max<double>(e.speed, length(p.velocities[i]));
+    }
+    return e;
+}
+
+double soundSpeed(const Scene& s, const FluidExtent& fluid) {
+    const int gamma = s.fluid.equationOfState == EquationOfState::Linear ? 1 : s.fluid.gamma;
+    if (s.fluid.stiffness > 0) return std::sqrt(double(s.fluid.stiffness) * gamma / s.fluid.restDensity);
+    if (s.fluid.soundSpeed > 0) return s.fluid.soundSpeed;
+    const Vec3d g = toDouble(s.simulation.gravity), size = domainSize(s);
+    double fall = 0;   // m^2/s^2
+    for (int k = 0; k < 3; ++k)
+        fall += s.domain.periodic(k) ? std::abs(g[k]) * size[k] : g[k] > 0 ? g[k] * (size[k] - fluid.low[k]) : -g[k] * fluid.high[k];
+    const double start = std::max<double>(fluid.speed, length(s.walls.velocity));
+    const double pull = s.simulation.centralRate * length(0.5 * size);   // to the centre from a corner
+    return s.fluid.speedRatio * std::max(std::sqrt(start * start + 2 * fall + pull * pull), 1e-3);
 }
 
 ParticleCount countParticles(const Scene& scene) {

@@ -8,10 +8,20 @@
 
 namespace spindrift {
 
-// Positions and walls in metres relative to domain.min, velocities in m/s (one for each position).
+// Positions and walls in metres relative to domain.min, velocities in m/s and pressures in Pa (one for each position; no
+// pressures: none anywhere).
 struct Placement {
     std::vector<Vec3> positions, velocities, walls;
+    std::vector<float> pressures;
 };
+
+// Where the fluid is at the start, m from the domain's corner, and how fast, m/s.
+struct FluidExtent { Vec3d low{1e30, 1e30, 1e30}, high{-1e30, -1e30, -1e30}; double speed = 0; };
+FluidExtent extentOf(const Placement&);
+
+// m/s: the scene's, or speed_ratio times the speed that fluid can reach by falling through the domain, whichever way gravity
+// points now.
+double soundSpeed(const Scene&, const FluidExtent&);
 
 // Fills the bodies on lattices and builds the boundary particles, in an order that depends on the
 // scene only.

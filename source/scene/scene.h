@@ -12,7 +12,7 @@ namespace spindrift {
 enum class Backend { Auto, Cpu, Cuda };
 enum class Precision { Float, Double };
 enum class Simd { Auto, Avx512, Avx2, Sse };
-enum class Formulation { Wcsph, Classic };
+enum class Formulation { Wcsph, DeltaSph, TransportVelocity, Classic };
 enum class Kernel { WendlandC2, CubicSpline };
 enum class EquationOfState { Tait, Linear };
 enum class WallKind { Reflect, Particles };
@@ -20,7 +20,9 @@ enum class TimeMode { Fixed, Cfl };
 enum class Shape { Block, Sphere, Cylinder };
 enum class Axis { X, Y, Z };
 enum class ColorBy { Plain, Velocity, Pressure, Density, Acceleration, Id };
-enum class Field { Uniform, TaylorGreen };
+enum class Field { Uniform, TaylorGreen, Stretching, Rotation, Shear };
+enum class StartPressure { None, Hydrostatic };
+enum class Face { None, XMin, XMax, YMin, YMax, ZMin, ZMax };
 enum class RangeMode { Frame, Run, Fixed };
 
 // One body of fluid, filled on a lattice. A block reads min and max, a sphere center and radius,
@@ -34,6 +36,7 @@ struct Body {
     Axis axis = Axis::Y;
     Vec3 velocity{0, 0, 0};                     // m/s; for a field its amplitude is the length
     Field field = Field::Uniform;               // of velocity at the start
+    StartPressure pressure = StartPressure::None;   // where a field has its own, that is added
 };
 
 struct Window {
@@ -60,6 +63,9 @@ struct SimulationKnobs {
     float spacing = 0.02f;                      // m, initial distance of particles
     float support = 2.6f;                       // support radius R / spacing
     Vec3 gravity{0, -9.81f, 0};                 // m/s^2
+    float centralRate = 0;                      // 1/s, Omega of a force -Omega^2 r towards the domain's centre
+    float jitter = 0;                           // random displacement of the start's lattice / spacing, each axis
+    int seed = 1;                               // of the jitter
     float accelerationLimit = 0;                // m/s^2, caps the pressure acceleration; 0 = off
 };
 
@@ -74,6 +80,8 @@ struct Walls {
     float restitution = 0;                      // share of the normal velocity kept on impact with the domain box
     float friction = 0;                         // share of the tangential velocity lost on impact
     float margin = 0;                           // the box is this share of its size smaller on each side
+    Face movingFace = Face::None;               // slides with `velocity`, and takes fluid along that sticks to it
+    Vec3 velocity{0, 0, 0};                     // m/s
 };
 
 struct Fluid {
@@ -83,6 +91,8 @@ struct Fluid {
     float speedRatio = 10;                      // sound speed / expected largest speed
     float viscosity = 0.001f;                   // Pa s, dynamic (Morris 1997); classic: its own coefficient
     float artificialViscosity = 0.05f;          // alpha of Monaghan 1992
+    float densityDiffusion = 0.1f;              // delta of Molteni & Colagrossi 2009, where density is carried
+    float shifting = 1;                         // share of Sun 2019's particle shifting, transport_velocity only
     EquationOfState equationOfState = EquationOfState::Tait;
     int gamma = 7;                              // Tait exponent
     float stiffness = 0;                        // Pa, pressure scale k of p = k((rho/rho0)^gamma - 1); 0 = rho0 c^2/gamma
@@ -143,5 +153,7 @@ struct Scene {
 // Derived values, so that every reader computes them the same way.
 float supportRadius(const Scene&);              // m
 float particleMass(const Scene&);               // kg; in two dimensions of a slab one spacing thick
+// Whether density follows the continuity equation from step to step, instead of being summed up anew.
+bool carriesDensity(const Scene&);
 
 }  // namespace spindrift

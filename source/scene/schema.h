@@ -22,7 +22,9 @@ inline constexpr bool Restart = false;
 constexpr auto enumNames(Backend) { return std::array{"auto", "cpu", "cuda"}; }
 constexpr auto enumNames(Precision) { return std::array{"float", "double"}; }
 constexpr auto enumNames(Simd) { return std::array{"auto", "avx512", "avx2", "sse"}; }
-constexpr auto enumNames(Formulation) { return std::array{"wcsph", "classic"}; }
+constexpr auto enumNames(Formulation) {
+    return std::array{"wcsph", "delta_sph", "transport_velocity", "classic"};
+}
 constexpr auto enumNames(Kernel) { return std::array{"wendland_c2", "cubic_spline"}; }
 constexpr auto enumNames(EquationOfState) { return std::array{"tait", "linear"}; }
 constexpr auto enumNames(WallKind) { return std::array{"reflect", "particles"}; }
@@ -33,7 +35,13 @@ constexpr auto enumNames(ColorBy) {
     return std::array{"plain", "velocity", "pressure", "density", "acceleration", "id"};
 }
 constexpr auto enumNames(ColorMap) { return std::array{"viridis", "cividis", "turbo", "coolwarm"}; }
-constexpr auto enumNames(Field) { return std::array{"uniform", "taylor_green"}; }
+constexpr auto enumNames(Field) {
+    return std::array{"uniform", "taylor_green", "stretching", "rotation", "shear"};
+}
+constexpr auto enumNames(StartPressure) { return std::array{"none", "hydrostatic"}; }
+constexpr auto enumNames(Face) {
+    return std::array{"none", "x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
+}
 constexpr auto enumNames(RangeMode) { return std::array{"frame", "run", "fixed"}; }
 
 // Visits one body's knobs; `at` is its path, e.g. "fluid.bodies[0]". Which knobs a body has depends
@@ -54,7 +62,13 @@ void visitBody(B& b, const std::string& at, Visitor&& visit) {
     }
     visit(at + ".velocity", b.velocity, Knob{"m/s", -1e3f, 1e3f, "initial velocity", Restart});
     visit(at + ".field", b.field,
-          Knob{"", 0, 0, "velocity at the start: the same everywhere, or Taylor-Green vortices of that amplitude", Restart});
+          Knob{"", 0, 0,
+               "velocity at the start: the same everywhere, or a flow of that amplitude: Taylor-Green "
+               "vortices as wide as the domain; stretching along x, rotation or shear in x and y, "
+               "about the body's centre, with that speed at the end of its largest half side",
+               Restart});
+    visit(at + ".pressure", b.pressure,
+          Knob{"", 0, 0, "at the start, where density is carried: none, or of the column above in this body", Restart});
 }
 
 namespace schema {
@@ -94,7 +108,11 @@ template <class S, class Visitor>
 void visitPhysics(S& s, Visitor&& visit) {
     auto& sim = s.simulation;
     visit("simulation.formulation", sim.formulation,
-          Knob{"", 0, 0, "weakly compressible SPH, or the historical classic one", Restart});
+          Knob{"", 0, 0,
+               "wcsph: density by summation, rugged; delta_sph: density carried and diffused, smooth "
+               "pressure; transport_velocity: second order, for flows that fill the domain; classic: "
+               "the historical one",
+               Restart});
     visit("simulation.dimensions", sim.dimensions,
           Knob{"", 2, 3, "2 = a layer of particles, everything depends on x and y only", Restart});
     visit("simulation.kernel", sim.kernel, Knob{"", 0, 0, "smoothing kernel", Restart});
@@ -102,6 +120,11 @@ void visitPhysics(S& s, Visitor&& visit) {
           Knob{"m", 1e-5f, 10, "initial distance of particles", Restart});
     visit("simulation.support", sim.support, Knob{"", 1, 6, "support radius / spacing", Restart});
     visit("simulation.gravity", sim.gravity, Knob{"m/s^2", -100, 100, "gravity"});
+    visit("simulation.central_rate", sim.centralRate,
+          Knob{"1/s", 0, 1000, "Omega of a pull -Omega^2 r to the domain's centre, 0 = off"});
+    visit("simulation.jitter", sim.jitter,
+          Knob{"", 0, 0.5f, "random displacement of each particle at the start / spacing", Restart});
+    visit("simulation.seed", sim.seed, Knob{"", 0, 1e9f, "of the jitter", Restart});
     visit("simulation.acceleration_limit", sim.accelerationLimit,
           Knob{"m/s^2", 0, 1e6f, "caps the pressure acceleration, 0 = off"});
 
@@ -120,6 +143,10 @@ void visitPhysics(S& s, Visitor&& visit) {
           Knob{"", 0, 1, "share of the tangential velocity lost on impact"});
     visit("walls.margin", s.walls.margin,
           Knob{"", 0, 0.4f, "share of its size the box is smaller, each side"});
+    visit("walls.moving_face", s.walls.movingFace,
+          Knob{"", 0, 0, "slides with walls.velocity and drags the fluid", Restart});
+    visit("walls.velocity", s.walls.velocity,
+          Knob{"m/s", -1e3f, 1e3f, "of the moving face, along itself"});
 
     visit("time.mode", s.time.mode, Knob{"", 0, 0, "fixed step or the largest stable one"});
     visit("time.step", s.time.step, Knob{"s", 1e-8f, 1, "time step when fixed"});
@@ -141,6 +168,10 @@ void visitFluid(S& s, Visitor&& visit) {
     visit("fluid.viscosity", f.viscosity, Knob{"Pa s", 0, 1000, "dynamic viscosity, 0 = off"});
     visit("fluid.artificial_viscosity", f.artificialViscosity,
           Knob{"", 0, 2, "alpha of Monaghan's artificial viscosity, 0 = off"});
+    visit("fluid.density_diffusion", f.densityDiffusion,
+          Knob{"", 0, 1, "delta of delta_sph and transport_velocity, 0 = off"});
+    visit("fluid.shifting", f.shifting,
+          Knob{"", 0, 4, "strength of particle shifting, transport_velocity only, 0 = off"});
     visit("fluid.equation_of_state", f.equationOfState,
           Knob{"", 0, 0, "pressure from density", Restart});
     visit("fluid.gamma", f.gamma, Knob{"", 1, 10, "exponent of the Tait equation"});

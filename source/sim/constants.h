@@ -28,24 +28,21 @@ template <class Kernel> double latticeLayer(const Scene& s, int height) {
     return sum * Kernel::norm(d) / std::pow(ratio, d);
 }
 
-// What sums over the neighbours of a lattice point give, which integrals would make 1: of W, of x dW/dx, and the Laplacian
-// of x^2/2 in the form of LaminarViscosity.
-struct LatticeSums { double kernel = 0, gradient = 0, laplacian = 0; };
+// What sums over the neighbours of a lattice point give, which integrals would make 1: of W and of x dW/dx. The second is also
+// the Laplacian of x^2/2 in the form of LaminarViscosity.
+struct LatticeSums { double kernel = 0, gradient = 0; };
 
 template <class Kernel> LatticeSums latticeSums(const Scene& s) {
-    const double ratio = s.simulation.support, eta2 = 0.01 * ratio * ratio / 4;
+    const double ratio = s.simulation.support;
     const int n = int(ratio) + 1, d = s.simulation.dimensions, across = d == 3 ? n : 0;
     const double norm = Kernel::norm(d) / std::pow(ratio, d);
     LatticeSums sums;
     for (int z = -across; z <= across; ++z)
         for (int y = -n; y <= n; ++y)
             for (int x = -n; x <= n; ++x) {
-                const double r2 = x * x + y * y + z * z;
-                const real q = real(std::sqrt(r2) / ratio);
-                const double gradient = -norm / (ratio * ratio) * Kernel::gradient * double(Kernel::g(q));
+                const real q = real(std::sqrt(double(x * x + y * y + z * z)) / ratio);
                 sums.kernel += norm * double(Kernel::w(q));
-                sums.gradient += gradient * x * x;
-                sums.laplacian += gradient * x * x * r2 / (r2 + eta2);
+                sums.gradient -= norm / (ratio * ratio) * Kernel::gradient * double(Kernel::g(q)) * x * x;
             }
     return sums;
 }
@@ -70,12 +67,15 @@ template <class Kernel> double calibrateMasses(const Scene& s, const LatticeSums
     return particleMass(s) / (scale * bulk * thickness);
 }
 
-// The speed that fluid can reach by falling through the domain, whichever way gravity points now, m/s.
-inline double expectedSpeed(const Scene& s, const FluidExtent& fluid) {
-    const Vec3d g = toDouble(s.simulation.gravity), size = toDouble(s.domain.max - s.domain.min);
-    double fall = 0;   // m^2/s^2
-    for (int k = 0; k < 3; ++k) fall += s.domain.periodic(k) ? std::abs(g[k]) * size[k] : g[k] > 0 ? g[k] * (size[k] - fluid.low[k]) : -g[k] * fluid.high[k];
-    return std::sqrt(fluid.speed * fluid.speed + 2 * fall);
+inline void slideFace(const Scene& s, Vec3 size, Constants& c) {
+    Vec3 below{-1e9f, -1e9f, -1e9f}, above{1e9f, 1e9f, 1e9f};
+    if (s.walls.movingFace != Face::None) {
+        const int face = int(s.walls.movingFace) - 1, axis = face / 2;
+        if (face % 2) above[axis] = size[axis];
+        else below[axis] = 0;
+    }
+    c.slidesBelow = toVector(below), c.slidesAbove = toVector(above);
+    c.slideVelocity = toVector(s.walls.velocity);
 }
 
 // Knobs that may change while running as well as those that don't.
@@ -87,19 +87,23 @@ template <class Kernel> Constants makeConstants(const Scene& s, const FluidExten
     c.restDensity = real(rho0);
     // On its lattice a linear pressure has its exact gradient and a parabolic velocity its exact Laplacian, as the lattice
     // has the rest density; without this, at R = 2.6 dx, the one is 3 %, the other 4 % too small.
-    const LatticeSums sums = s.simulation.formulation == Formulation::Wcsph ? latticeSums<Kernel>(s) : LatticeSums{1, 1, 1};
+    const LatticeSums sums = s.simulation.formulation == Formulation::Classic ? LatticeSums{1, 1} : latticeSums<Kernel>(s);
     const double mass = calibrateMasses<Kernel>(s, sums, c);
     const int d = s.simulation.dimensions;
     c.kernelScale = real(mass * Kernel::norm(d) / std::pow(R, d));
     c.gradientScale = real(mass * Kernel::gradient * Kernel::norm(d) / std::pow(R, d + 2) * sums.kernel / sums.gradient);
 
     c.gamma = linear ? 1 : s.fluid.gamma;
-    double sound = s.fluid.soundSpeed > 0 ? s.fluid.soundSpeed : s.fluid.speedRatio * std::max(expectedSpeed(s, fluid), 1e-3);
-    if (s.fluid.stiffness > 0) sound = std::sqrt(s.fluid.stiffness * c.gamma / rho0);
+    const double sound = soundSpeed(s, fluid);
     c.stiffness = real(rho0 * sound * sound / c.gamma);
     c.soundSpeed = real(sound);
 
-    c.laminar = real(2 * s.fluid.viscosity * sums.gradient / sums.laplacian);
+    c.leastPressure = carriesDensity(s) ? real(-1e30) : real(0);
+    c.diffusion = real(2 * s.fluid.densityDiffusion * h * sound);
+    c.shifting = real(s.fluid.shifting * 2 * h);
+    c.shiftWeight = 1 / Kernel::w(real(1 / s.simulation.support));
+    c.dimensions = d, c.flatMoment = d == 2 ? 1 : 0;
+    c.laminar = real(2 * s.fluid.viscosity);
     c.artificial = real(s.fluid.artificialViscosity * sound * h / 2);
     c.classicViscosity = real(s.fluid.viscosity * particleMass(s) / (rho0 * 3.14159265358979323846 * std::pow(R, 5)) / c.gradientScale);
     c.eta2 = real(0.01 * h * h);
@@ -107,6 +111,9 @@ template <class Kernel> Constants makeConstants(const Scene& s, const FluidExten
     c.gravity = toVector(s.simulation.gravity);
 
     const Vec3 size = s.domain.max - s.domain.min;
+    c.centralPull = real(s.simulation.centralRate * s.simulation.centralRate);
+    c.center = toVector(0.5f * size);
+    slideFace(s, size, c);
     c.low = toVector(s.walls.margin * size);
     c.high = toVector((1 - s.walls.margin) * size);
     c.periodic = s.domain.periodicX || s.domain.periodicY || s.domain.periodicZ;

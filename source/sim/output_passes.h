@@ -59,12 +59,12 @@ template <class Value> struct CountValues {
 
 // Sums over the fluid, in double precision.
 struct Totals {
-    double speed2 = 0, density = 0, compression = 0;
+    double speed2 = 0, density = 0, compression = 0, position2 = 0;
     double velocity[3] = {0, 0, 0}, position[3] = {0, 0, 0};
     double maxSpeed2 = 0, maxDensity = 0;
     int64_t notFinite = 0;
     HD_OUT void add(const Totals& o) {
-        speed2 += o.speed2, density += o.density, compression += o.compression;
+        speed2 += o.speed2, density += o.density, compression += o.compression, position2 += o.position2;
         for (int k = 0; k < 3; ++k) velocity[k] += o.velocity[k], position[k] += o.position[k];
         maxSpeed2 = o.maxSpeed2 > maxSpeed2 ? o.maxSpeed2 : maxSpeed2;
         maxDensity = o.maxDensity > maxDensity ? o.maxDensity : maxDensity;
@@ -85,6 +85,7 @@ struct SumUp {
         one.compression = excess > 0 ? excess : 0;
         one.velocity[0] = ux, one.velocity[1] = uy, one.velocity[2] = uz;
         one.position[0] = x.x, one.position[1] = x.y, one.position[2] = x.z;
+        one.position2 = double(x.x) * x.x + double(x.y) * x.y + double(x.z) * x.z;
         const double sum = speed2 + rho + double(x.x) + double(x.y) + double(x.z);
         one.notFinite = sum - sum == 0 ? 0 : 1;
         t.add(one);

@@ -26,14 +26,17 @@ public:
 
     Particles view() const {
         return {slots_, id_.data(), {position_.data()}, {velocity_.data()}, {acceleration_.data()},
-                {density_.data()}, {inverseDensity_.data()}, {pressureTerm_.data()}, {mass_.data()}};
+                {density_.data()}, {inverseDensity_.data()}, {pressureTerm_.data()}, {mass_.data()},
+                {densityRate_.data()}, {shiftVelocity_.data()}, {shiftAcceleration_.data()}};
     }
 
-    // Takes over particles with ids firstId, firstId + 1, ...; boundary particles have no velocities.
-    void upload(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities, int firstId) {
+    // Takes over particles with ids firstId, firstId + 1, ...; boundary particles have no velocities. Densities only where they
+    // are carried.
+    void upload(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities, const std::vector<float>& densities,
+                int firstId) {
         const int n = int(positions.size());
         resize((n + clusterSize - 1) / clusterSize * clusterSize);
-        std::vector<real> x(vectorSize(slots_)), u(vectorSize(slots_));
+        std::vector<real> x(vectorSize(slots_)), u(vectorSize(slots_)), rho(densities.begin(), densities.end());
         std::vector<int> id(slots_, -1);
         for (int i = 0; i < n; ++i) {
             id[i] = firstId + i;
@@ -44,6 +47,7 @@ public:
         }
         device_.upload(position_.data(), x.data(), x.size());
         if (kind_ == Kind::Fluid) device_.upload(velocity_.data(), u.data(), u.size());
+        if (carriesDensity_) device_.upload(density_.data(), rho.data(), rho.size());
         device_.upload(id_.data(), id.data(), id.size());
     }
 
@@ -58,10 +62,12 @@ public:
         sortedId_.resize(slots);
         sortedPosition_.resize(vectorSize(slots));
         if (kind_ == Kind::Fluid) sortedVelocity_.resize(vectorSize(slots));
+        if (carriesDensity_) sortedDensity_.resize(slots);
         Particles sorted = view();
         sorted.id = sortedId_.data();
         sorted.position = {sortedPosition_.data()};
         sorted.velocity = {sortedVelocity_.data()};
+        sorted.density = {sortedDensity_.data()};
         device_.forEach(slots, Reorder{order_.data(), view(), sorted});
         flip();
         resize(slots);
@@ -72,14 +78,16 @@ public:
         id_.swap(sortedId_);
         position_.swap(sortedPosition_);
         if (kind_ == Kind::Fluid) velocity_.swap(sortedVelocity_);
+        if (carriesDensity_) density_.swap(sortedDensity_);
         side_ = 1 - side_;
     }
     int side() const { return side_; }
-    // Boundary particles have a velocity only where fluid sticks to them.
-    void carryVelocity() {
-        carriesVelocity_ = true;
-        velocity_.resize(vectorSize(slots_));
-    }
+    // Boundary particles have a velocity only where fluid sticks to them, a density only where its gradient is wanted.
+    void carryVelocity() { carriesVelocity_ = true, resize(slots_); }
+    void haveDensity() { hasDensity_ = true, resize(slots_); }
+    // Fluid's density comes from a sum, or goes from step to step with a rate; with shifting its particles leave the fluid's paths.
+    void carryDensity() { carriesDensity_ = true; }
+    void shift() { shifts_ = true; }
     // Particles that never move are sorted once.
     void keepOrder() {
         sortedId_.release(), key_.release(), order_.release();
@@ -90,6 +98,16 @@ public:
     // became of it.
     std::vector<Vec3> positions(int count, int firstId) const { return inOrder(position_, count, firstId); }
     std::vector<Vec3> velocities(int count, int firstId) const { return inOrder(velocity_, count, firstId); }
+    // Empty where density is not carried.
+    std::vector<float> densities(int count) const {
+        if (!carriesDensity_) return {};
+        const std::vector<real> values = copy(density_);
+        const std::vector<int> id = copy(id_);
+        std::vector<float> out(count);
+        for (int i = 0; i < slots_; ++i)
+            if (id[i] >= 0) out[id[i]] = float(values[i]);
+        return out;
+    }
 
     // In the order of ids, in world coordinates.
     std::vector<Particle> download(int count, Vec3 origin) const {
@@ -97,7 +115,7 @@ public:
         std::vector<real> x = copy(position_), u = copy(velocity_), a = copy(acceleration_);
         std::vector<real> rho = copy(density_), term = copy(pressureTerm_);
         const Particles host{slots_, id.data(), {x.data()}, {u.data()}, {a.data()},
-                             {rho.data()}, {nullptr}, {term.data()}, {nullptr}};
+                             {rho.data()}, {nullptr}, {term.data()}, {nullptr}, {nullptr}, {nullptr}, {nullptr}};
         std::vector<Particle> out(count);
         for (int i = 0; i < slots_; ++i)
             if (id[i] >= 0) out[id[i]] = describe(host, i, origin);
@@ -115,7 +133,7 @@ public:
         std::vector<real> rho = numbers(density_), term = numbers(pressureTerm_);
         std::vector<int> own(ids.begin() + first, ids.begin() + first + clusterSize);
         const Particles host{clusterSize, own.data(), {x.data()}, {u.data()}, {a.data()},
-                             {rho.data()}, {nullptr}, {term.data()}, {nullptr}};
+                             {rho.data()}, {nullptr}, {term.data()}, {nullptr}, {nullptr}, {nullptr}, {nullptr}};
         return describe(host, slot - first, origin);
     }
 
@@ -126,9 +144,13 @@ private:
         position_.resize(vectorSize(slots));
         pressureTerm_.resize(slots);
         if (carriesVelocity_) velocity_.resize(vectorSize(slots));
+        if (hasDensity_) density_.resize(slots);
         if (kind_ == Kind::Walls) return mass_.resize(slots);
         acceleration_.resize(vectorSize(slots));
-        for (auto* field : {&density_, &inverseDensity_}) field->resize(slots);
+        inverseDensity_.resize(slots);
+        if (carriesDensity_) densityRate_.resize(slots);
+        if (shifts_)
+            for (auto* field : {&shiftVelocity_, &shiftAcceleration_}) field->resize(vectorSize(slots));
     }
     static Particle describe(const Particles& host, int i, Vec3 origin) {
         auto toVec3d = [](Vector<real> v) { return Vec3d{double(v.x), double(v.y), double(v.z)}; };
@@ -155,11 +177,12 @@ private:
 
     Device& device_;
     Kind kind_;
-    bool carriesVelocity_ = kind_ == Kind::Fluid;
+    bool carriesVelocity_ = kind_ == Kind::Fluid, hasDensity_ = kind_ == Kind::Fluid, carriesDensity_ = false, shifts_ = false;
     int slots_ = 0, side_ = 0;
     Buffer<int, Device> id_{device_}, sortedId_{device_}, key_{device_}, order_{device_}, cellStart_{device_};
     Buffer<real, Device> position_{device_}, velocity_{device_}, acceleration_{device_};
-    Buffer<real, Device> sortedPosition_{device_}, sortedVelocity_{device_};
+    Buffer<real, Device> sortedPosition_{device_}, sortedVelocity_{device_}, sortedDensity_{device_};
+    Buffer<real, Device> densityRate_{device_}, shiftVelocity_{device_}, shiftAcceleration_{device_};
     Buffer<real, Device> density_{device_}, inverseDensity_{device_}, pressureTerm_{device_}, mass_{device_};
 };
 

@@ -27,7 +27,9 @@ public:
         : device_(std::move(device)), deviceName_(std::move(deviceName)), scene_(scene),
           fluidCount_(int(state.particles.positions.size())), wallCount_(int(state.particles.walls.size())),
           extent_(state.start), grid_(makeGrid(scene, size_t(fluidCount_) + size_t(wallCount_))) {
-        walls_.upload(state.particles.walls, {}, fluidCount_);
+        if (carriesDensity(scene)) fluid_.carryDensity();
+        if (shifts()) fluid_.shift(), walls_.haveDensity();
+        walls_.upload(state.particles.walls, {}, {}, fluidCount_);
         clock_.resize(1);
         extremes_.resize(1);
         apply(scene);
@@ -37,7 +39,7 @@ public:
 
     void restart(const RunState& state) override {
         CHECK(int(state.particles.positions.size()) == fluidCount_);
-        fluid_.upload(state.particles.positions, state.particles.velocities, 0);
+        fluid_.upload(state.particles.positions, state.particles.velocities, densitiesOf(state), 0);
         device_.upload(clock_.data(), &state.clock, 1);
         travel_ = 1e30;
         // Density and acceleration of the first picture.
@@ -88,9 +90,10 @@ public:
     RunState state() override {
         RunState s;
         s.particles = {fluid_.positions(fluidCount_, 0), fluid_.velocities(fluidCount_, 0),
-                       walls_.positions(wallCount_, fluidCount_)};
+                       walls_.positions(wallCount_, fluidCount_), {}};
         device_.download(&s.clock, clock_.data(), 1);
         s.start = extent_;
+        s.densities = fluid_.densities(fluidCount_);
         return s;
     }
     std::vector<Particle> particles() override { return fluid_.download(fluidCount_, scene_.domain.min); }
@@ -117,10 +120,11 @@ public:
     }
 
 private:
+    using PassFunction = void (SimulationOn::*)();
     enum class Initial : bool { No, Yes };   // also run before the first step, so that there is something to see?
     struct Row {
         const char* name;
-        void (SimulationOn::*run)();
+        PassFunction run;
         Initial initial;
         PassTime* time = nullptr;
     };
@@ -132,23 +136,52 @@ private:
         rows_.clear();
         addPass("sort", &S::sortFluid, Initial::Yes);
         addPass("neighbours", &S::findNeighbours, Initial::Yes, keepsLists ? "" : "rows of cells are walked instead of lists");
-        addPass("density", &S::template onFluid<ComputeDensity<K>>, Initial::Yes);
-        addPass("walls", fluidSticks() ? &S::template onWalls<ExtrapolateToWalls<K, true>>
-                                    : &S::template onWalls<ExtrapolateToWalls<K, false>>, Initial::Yes, whyNoWallPressure());
-        addPass("forces", chooseTerms(scene_, [](auto terms) { return forces<K>(terms); }, TermList<PressureForce>{},
-                                   OptionalTerms{}), Initial::Yes);
+        carriesDensity(scene_) ? addPass("equation of state", &S::template onFluid<ApplyEquationOfState>, Initial::Yes)
+                               : addPass("density", &S::template onFluid<ComputeDensity<K>>, Initial::Yes);
+        addPass("walls", wallPass<K>(), Initial::Yes, whyNoWallPressure());
+        addPass("forces", forcePass<K>(), Initial::Yes);
         noteTerms(OptionalTerms{});
-        addPass("extremes", &S::findExtremes, Initial::No,
-             keepsLists || constants_.fixedStep <= 0 ? "" : "the time step is fixed (time.mode)");
+        addPass("extremes", shifts() ? &S::findExtremes<true> : &S::findExtremes<false>, Initial::No,
+                keepsLists || shifts() || constants_.fixedStep <= 0 ? "" : "the time step is fixed (time.mode)");
         addPass("time step", &S::chooseTimeStep);
         addPass("stir", &S::template onFluid<StirFluid>, Initial::No, stir_.radius > 0 ? "" : "nobody stirs");
-        addPass("integrate", &S::template onFluid<Integrate>);
+        if (!carriesDensity(scene_)) {
+            addPass("integrate", &S::template onFluid<Integrate<Kick | Drift>>);
+        } else {
+            addPass("kick", &S::template onFluid<Integrate<Kick>>);
+            addPass(shifts() ? "transport" : "density rate", ratePass<K>());
+            addPass("drift", shifts() ? &S::template onFluid<Integrate<Drift | DriftDensity | DriftShifted>>
+                                      : &S::template onFluid<Integrate<Drift | DriftDensity>>);
+        }
         for (Row& row : plan_) row.time = timeOf(row.name);
     }
-    void addPass(const char* name, void (SimulationOn::*run)(), Initial initial = Initial::No, const char* skipped = "") {
+    void addPass(const char* name, PassFunction run, Initial initial = Initial::No, const char* skipped = "") {
         rows_.push_back({name, skipped});
         if (!*skipped) plan_.push_back({name, run, initial});
     }
+    template <class K> PassFunction wallPass() const {
+        using S = SimulationOn;
+        if (shifts())
+            return fluidSticks() ? &S::template onWalls<ExtrapolateToWalls<K, true, true>>
+                                 : &S::template onWalls<ExtrapolateToWalls<K, false, true>>;
+        return fluidSticks() ? &S::template onWalls<ExtrapolateToWalls<K, true, false>>
+                             : &S::template onWalls<ExtrapolateToWalls<K, false, false>>;
+    }
+    // The first pass over the fluid's neighbours in a step prunes the lists.
+    template <class K> PassFunction forcePass() const {
+        if (shifts())
+            return *LaminarViscosity::skipped(scene_) ? forces<K, Lists::Prune>(TermList<CorrectedPressureForce>{})
+                                                      : forces<K, Lists::Prune>(TermList<CorrectedPressureForce, LaminarViscosity>{});
+        if (carriesDensity(scene_))
+            return chooseTerms(scene_, [](auto terms) { return forces<K, Lists::Prune>(terms); }, TermList<PressureForce>{},
+                               TermList<LaminarViscosity, ArtificialViscosity>{});
+        return chooseTerms(scene_, [](auto terms) { return forces<K, Lists::Pruned>(terms); }, TermList<PressureForce>{},
+                           OptionalTerms{});
+    }
+    template <class K> PassFunction ratePass() const {
+        return shifts() ? &SimulationOn::template onFluid<ComputeTransport<K>> : &SimulationOn::template onFluid<ComputeDensityRate<K>>;
+    }
+    bool shifts() const { return scene_.simulation.formulation == Formulation::TransportVelocity; }
     bool fluidSticks() const { return wallsCarryPressure() && !*LaminarViscosity::skipped(scene_); }
     template <class... Ts> void noteTerms(TermList<Ts...>) {
         (rows_.push_back({std::string("forces: ") + Ts::name, Ts::skipped(scene_)}), ...);
@@ -173,8 +206,19 @@ private:
             for (Row& row : plan_) (this->*row.run)();
         });
     }
-    template <class K, class... Ts> static auto forces(TermList<Ts...>) {
-        return &SimulationOn::template onFluid<ComputeForces<K, TermList<Ts...>>>;
+    template <class K, Lists lists, class... Ts> static PassFunction forces(TermList<Ts...>) {
+        return &SimulationOn::template onFluid<ComputeForces<K, lists, TermList<Ts...>>>;
+    }
+    // At the beginning by the equation of state from the pressures.
+    std::vector<float> densitiesOf(const RunState& state) const {
+        if (!carriesDensity(scene_) || !state.densities.empty()) return state.densities;
+        std::vector<float> densities;
+        for (float pressure : state.particles.pressures) {
+            const double power = std::max(1 + double(pressure) / constants_.stiffness, 0.1);
+            densities.push_back(float(constants_.restDensity * std::pow(power, 1.0 / constants_.gamma)));
+        }
+        densities.resize(state.particles.positions.size(), float(constants_.restDensity));
+        return densities;
     }
     template <class F> void withKernel(F f) {
         scene_.simulation.kernel == Kernel::WendlandC2 ? f(WendlandC2Kernel{}) : f(CubicSplineKernel{});
@@ -188,7 +232,7 @@ private:
         return &times_.emplace_back(PassTime{name, 0, 0});
     }
 
-    bool wallsCarryPressure() const { return wallCount_ > 0 && scene_.simulation.formulation == Formulation::Wcsph; }
+    bool wallsCarryPressure() const { return wallCount_ > 0 && scene_.simulation.formulation != Formulation::Classic; }
     template <class Pass> void onFluid() { device_.forEach(fluid_.slots(), Pass{view()}); }
     template <class Pass> void onWalls() { device_.forEach(walls_.slots(), Pass{view()}); }
     // Order and lists hold until two particles may have come closer by the skin.
@@ -207,7 +251,9 @@ private:
             fluidNearWalls_.build(device_, grid_, reach, wallBoxes_, walls_.view(), boxes_, fluid_.cellStart());
         travel_ = 0;
     }
-    void findExtremes() { device_.reduce(fluid_.slots(), FindExtremes{fluid_.view()}, extremes_.data()); }
+    template <bool volume> void findExtremes() {
+        device_.reduce(fluid_.slots(), FindExtremes<volume>{fluid_.view(), constants_.restDensity}, extremes_.data());
+    }
     void chooseTimeStep() {
         device_.forEach(1, ChooseTimeStep{view(), extremes_.data()});
         if constexpr (keepsLists) travel_ += clock_.data()->dt * largestSpeed(clock_.data()->dt);
@@ -215,7 +261,8 @@ private:
     // Of any particle at the end of a step of length dt, stirring included.
     double largestSpeed(double dt) const {
         const Extremes& e = *extremes_.data();
-        return std::max<double>(std::sqrt(e.speed2), length(stir_.velocity)) + dt * std::sqrt(e.acceleration2);
+        const double own = std::max<double>(std::sqrt(e.speed2), length(stir_.velocity)) + dt * std::sqrt(e.acceleration2);
+        return shifts() ? 1.5 * own : own;   // the shift is at most half as fast
     }
 
     // Walls never move: sorted once, and their masses stay.
@@ -302,6 +349,9 @@ template <class Device> Measurement SimulationOn<Device>::measure() {
     m.time = state.time, m.dt = state.dt, m.steps = state.steps;
     m.kineticEnergy = mass * t.speed2 / 2;
     m.potentialEnergy = mass * n * dot(-1.0 * toDouble(scene_.simulation.gravity), center) + 0.0;   // no minus zero
+    const Vec3d middle = 0.5 * toDouble(scene_.domain.max - scene_.domain.min);
+    const double pull = scene_.simulation.centralRate * double(scene_.simulation.centralRate);
+    m.potentialEnergy += pull * mass / 2 * (t.position2 - 2 * n * dot(center, middle) + n * dot(middle, middle));
     m.momentum = mass * Vec3d{t.velocity[0], t.velocity[1], t.velocity[2]};
     m.centerOfMass = center + toDouble(scene_.domain.min);
     m.meanDensity = t.density / n;

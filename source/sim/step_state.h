@@ -8,6 +8,8 @@ struct StepState {
     double time = 0;     // s
     double dt = 0;       // s, of the last step
     int64_t steps = 0;
+    double speed = 0;    // m/s, the largest before the last step
+    double volume = 1;   // of all particles then, share of their volume at rest density
 };
 
 }  // namespace spindrift

@@ -14,16 +14,20 @@
 
 namespace spindrift::LANES {
 
-enum Needs : unsigned { Velocity = 1, InverseDensity = 2, WallVelocity = 4 };
+enum Needs : unsigned { Velocity = 1, InverseDensity = 2, WallVelocity = 4, Pressure = 8 };
 
 // What terms read of one particle.
-template <class R> struct State { Vector<R> velocity; R pressureTerm, inverseDensity; };
+template <class R> struct State { Vector<R> velocity; R pressureTerm, inverseDensity, pressure; };
 
 template <unsigned needs, class I> HD inline State<Real<I>> loadState(const Particles& p, I i) {
     State<Real<I>> s;
     s.pressureTerm = load(p.pressureTerm, i);
     if constexpr (needs & Velocity) s.velocity = load(p.velocity, i);
     if constexpr (needs & InverseDensity) s.inverseDensity = load(p.inverseDensity, i);
+    if constexpr (needs & Pressure) {
+        const Real<I> rho = load(p.density, i);
+        s.pressure = s.pressureTerm * rho * rho;
+    }
     return s;
 }
 
@@ -38,8 +42,9 @@ template <unsigned needs, class I> HD inline Wall<Real<I>> loadWall(const Partic
     return w;
 }
 
-// The pressure part is kept apart because the classic formulation caps it.
-template <class R> struct Acceleration { Vector<R> pressure, other; };
+// The pressure part is kept apart because the classic formulation caps it. Moments sum (V_j / m) g r r: what gradients are
+// corrected by.
+template <class R> struct Acceleration { Vector<R> pressure, other; Symmetric<R> moments; };
 
 // -sum_j m (p_i/rho_i^2 + p_j/rho_j^2) grad W, Monaghan 1992. Walls take part with the pressure that
 // ExtrapolateWallPressure gave them; in the classic formulation (and Akinci 2012) they have none.
@@ -57,7 +62,27 @@ struct PressureForce {
     }
 };
 
-// Laminar viscosity, Morris 1997: sum_j m 2 mu / (rho_i rho_j) (x.grad W) / (d^2 + eta^2) v_ij; at walls with the velocity
+// -(grad p) / rho_i from differences, sum_j V_j (p_j - p_i) grad W, for ComputeForces to divide by the moments: exact for
+// linear pressures however the particles lie (Randles & Libersky 1996), where fluid is all around. It does not keep momentum to round-off.
+struct CorrectedPressureForce {
+    static constexpr unsigned needs = Pressure | InverseDensity;
+    static constexpr const char* name = "corrected pressure";
+    template <class R> HD static void addDifference(Acceleration<R>& a, R weight, R difference, Vector<R> r) {
+        a.moments = addOuter(a.moments, weight, r);
+        a.pressure = addScaled(a.pressure, weight * difference, r);
+    }
+    template <class R>
+    HD static void add(const Constants&, const Pair<R>& p, R g, const State<R>& i, const State<R>& j, Acceleration<R>& a) {
+        addDifference(a, g * j.inverseDensity, j.pressure - i.pressure, p.r);
+    }
+    template <class R>
+    HD static void addWall(const Constants& c, const Pair<R>& p, R g, const State<R>& i, const Wall<R>& b, Acceleration<R>& a) {
+        const R rho0 = c.restDensity;
+        addDifference(a, g * b.mass * R(1 / c.restDensity), b.pressureTerm * rho0 * rho0 - i.pressure, p.r);
+    }
+};
+
+// Laminar viscosity, Morris 1997: sum_j m 2 mu / (rho_i rho_j) (x.grad W) / d^2 v_ij, which has no pole at d = 0; at walls with the velocity
 // of ExtrapolateToWalls, so that fluid doesn't slip (Adami 2012).
 struct LaminarViscosity {
     static constexpr unsigned needs = Velocity | InverseDensity | WallVelocity;
@@ -66,17 +91,13 @@ struct LaminarViscosity {
         if (s.simulation.formulation == Formulation::Classic) return "the classic formulation has another one";
         return s.fluid.viscosity > 0 ? "" : "fluid.viscosity is 0";
     }
-    template <class R> HD static R strength(const Constants& c, const Pair<R>& p, R g, R ownInverseDensity) {
-        return R(c.laminar) * ownInverseDensity * g * (p.distance2 * p.inverseDistance2);
+    template <class R>
+    HD static void add(const Constants& c, const Pair<R>&, R g, const State<R>& i, const State<R>& j, Acceleration<R>& a) {
+        a.other = addScaled(a.other, R(c.laminar) * g * i.inverseDensity * j.inverseDensity, i.velocity - j.velocity);
     }
     template <class R>
-    HD static void add(const Constants& c, const Pair<R>& p, R g, const State<R>& i, const State<R>& j, Acceleration<R>& a) {
-        a.other = addScaled(a.other, strength(c, p, g, i.inverseDensity) * j.inverseDensity, i.velocity - j.velocity);
-    }
-    template <class R>
-    HD static void addWall(const Constants& c, const Pair<R>& p, R g, const State<R>& i, const Wall<R>& b, Acceleration<R>& a) {
-        a.other = addScaled(a.other, strength(c, p, g, i.inverseDensity) * i.inverseDensity * b.mass,
-                            i.velocity - b.velocity);
+    HD static void addWall(const Constants& c, const Pair<R>&, R g, const State<R>& i, const Wall<R>& b, Acceleration<R>& a) {
+        a.other = addScaled(a.other, R(c.laminar) * g * i.inverseDensity * i.inverseDensity * b.mass, i.velocity - b.velocity);
     }
 };
 
@@ -87,6 +108,7 @@ struct ArtificialViscosity {
     static constexpr const char* name = "artificial viscosity";
     static const char* skipped(const Scene& s) {
         if (s.simulation.formulation == Formulation::Classic) return "the classic formulation has none";
+        if (s.simulation.formulation == Formulation::TransportVelocity) return "transport_velocity does without";
         return s.fluid.artificialViscosity > 0 ? "" : "fluid.artificial_viscosity is 0";
     }
     template <class R> HD static R approach(const Constants& c, const Pair<R>& p, R g, Vector<R> vij) {

@@ -22,10 +22,13 @@ struct Particles {
     VectorField position;          // m, relative to the domain's lower corner
     VectorField velocity;          // m/s
     VectorField acceleration;      // m/s^2
-    ScalarField density;           // kg/m^3
+    ScalarField density;           // kg/m^3; of boundary particles only where density gradients are wanted
     ScalarField inverseDensity;    // m^3/kg
     ScalarField pressureTerm;      // p / rho^2
     ScalarField mass;              // boundary particles only (Akinci 2012): m_b / m
+    ScalarField densityRate;       // kg/(m^3 s), where density is carried
+    VectorField shiftVelocity;     // m/s, where particles are shifted: how much faster than the fluid they move,
+    VectorField shiftAcceleration; // m/s^2, and what a particle's velocity changes by for being elsewhere
 };
 
 // Cells are thin along x and a few particles wide along y and z: a row of cells is one stretch of memory.
@@ -85,12 +88,22 @@ struct Constants {
     real wallFactor, wallMassFloor;               // boundary mass m_b = wallFactor rho0 / sum W; floor in units of m
     real restDensity;                             // kg/m^3
     real stiffness; int gamma;                    // p = k ((rho/rho0)^gamma - 1), Pa
+    real leastPressure;                           // Pa
+    real diffusion;                               // 2 delta h c, m^2/s, of carried density
+    real shifting;                                // shift velocity per largest speed, m
+    real shiftWeight;                             // 1 / w at the distance of neighbours on the lattice
+    int dimensions;
+    real flatMoment;                              // what makes moments in two dimensions invertible: 1, otherwise 0
     real laminar;                                 // 2 mu, Pa s
     real artificial;                              // alpha c h / 2, m^2/s
     real classicViscosity;                        // nu m / (rho0 pi R^5) in units of gradientScale
     real eta2;                                    // 0.01 h^2, keeps 1/d^2 finite
     real accelerationLimit;                       // m/s^2
     Vector<real> gravity;                         // m/s^2
+    real centralPull;                             // 1/s^2, Omega^2 of -Omega^2 (x - center)
+    Vector<real> center;                          // m
+    Vector<real> slidesBelow, slidesAbove;        // m: boundary particles below or above these slide with
+    Vector<real> slideVelocity;                   // m/s
     Vector<real> low, high;                       // m, the box that positions stay in
     Vector<real> period, inversePeriod;           // m, 1/m, of periodic axes; 0 for the others
     bool periodic;                                // any of them
@@ -107,6 +120,29 @@ struct View {
     Constants c;
     StepState* state;
 };
+
+// What pulls at every particle, m/s^2.
+template <class R> HD inline Vector<R> bodyForce(const Constants& c, Vector<R> x) {
+    const Vector<R> gravity{c.gravity.x, c.gravity.y, c.gravity.z}, center{c.center.x, c.center.y, c.center.z};
+    return subtractScaled(gravity, R(c.centralPull), x - center);
+}
+
+// From the nearest point of the domain's surface to a boundary particle outside, m.
+template <class R> HD inline Vector<R> outward(const Constants& c, Vector<R> x) {
+    auto beyond = [](R at, real center) LANE_CALL { return at - max(min(at, R(2 * center)), R(0)); };
+    return {beyond(x.x, c.center.x), beyond(x.y, c.center.y), beyond(x.z, c.center.z)};
+}
+
+// Of the wall itself at one of its particles, m/s.
+template <class R> HD inline Vector<R> wallVelocity(const Constants& c, Vector<R> x) {
+    const R zero = 0, one = 1;
+    auto slides = [&](R at, real below, real above) LANE_CALL {
+        return max(select(at < R(below), one, zero), select(at > R(above), one, zero));
+    };
+    const R share = max(slides(x.x, c.slidesBelow.x, c.slidesAbove.x),
+                        max(slides(x.y, c.slidesBelow.y, c.slidesAbove.y), slides(x.z, c.slidesBelow.z, c.slidesAbove.z)));
+    return share * Vector<R>{c.slideVelocity.x, c.slideVelocity.y, c.slideVelocity.z};
+}
 
 }  // namespace spindrift::LANES
 

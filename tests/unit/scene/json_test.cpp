@@ -99,7 +99,7 @@ TEST(ReadScene, NamesPlaceAndRemedyOfEachMistake) {
         {R"({"version": 2, "fluid": {"bodies": [3]}})",
          "fluid.bodies[0]: expected an object {...}, found 3"},
         {R"({"version": 2, "fluid": {"bodies": [{"radius": 1}]}})",
-         "fluid.bodies[0].radius: unknown key; known here: field, max, min, shape, velocity"},
+         "fluid.bodies[0].radius: unknown key; known here: field, max, min, pressure, shape, velocity"},
         {R"({"version": 2, "fluid": {"bodies": [{}, {"shape": "cube"}]}})",
          "fluid.bodies[1].shape: expected one of"},
         {"{\"version\": 2, \"name\": " + std::string(100000, '[') + "}",

@@ -101,13 +101,19 @@ struct BruteForce {
         return (w(k, q + e, d) - w(k, std::max(0.0, q - e), d)) / (q + e - std::max(0.0, q - e));
     }
 
+    // W'/q, of particles in one place its limit: viscosity acts between them, pressure has no direction.
+    static double slope(Kernel k, double q, int d) {
+        if (q == 0) return (k == Kernel::WendlandC2 ? -20 : -12) * w(k, 0, d);
+        return derivative(k, q, d) / q;
+    }
+
     BruteForce(const Scene& s, const Placement& p) {
         const int dim = s.simulation.dimensions;
         const double thickness = dim == 2 ? s.simulation.spacing : 1;
         const double R = supportRadius(s), h = R / 2, rho0 = s.fluid.restDensity;
         const Moments moments = latticeMoments(s);
         const double m = particleMass(s) / (moments.kernel * thickness);
-        const double exactGradient = moments.kernel / moments.gradient, exactLaplacian = moments.gradient / moments.laplacian;
+        const double exactGradient = moments.kernel / moments.gradient;
         const double c = s.fluid.soundSpeed, k = rho0 * c * c / s.fluid.gamma;
         const size_t n = p.positions.size();
         rho.resize(n), a.resize(n);
@@ -129,16 +135,17 @@ struct BruteForce {
             for (size_t j = 0; j < n; ++j) {
                 const Vec3d r = apart(i, j), u = toDouble(p.velocities[i]) - toDouble(p.velocities[j]);
                 const double d = length(r);
-                if (d == 0 || d >= R) continue;
-                const Vec3d gradW = (exactGradient * m / std::pow(R, dim + 1) * derivative(s.simulation.kernel, d / R, dim) / d) * r;
+                if (i == j || d >= R) continue;
+                const double F = exactGradient * m / std::pow(R, dim + 2) * slope(s.simulation.kernel, d / R, dim);
+                const Vec3d gradW = F * r;
                 const double meet = std::min(0.0, dot(u, r)) / (d * d + 0.01 * h * h);
                 const double artificial = s.fluid.artificialViscosity * c * h * meet * 0.5 * (1 / rho[i] + 1 / rho[j]);
-                const double laminar = exactLaplacian * 2 * s.fluid.viscosity / (rho[i] * rho[j]) * dot(r, gradW) / (d * d + 0.01 * h * h);
+                const double laminar = 2 * s.fluid.viscosity / (rho[i] * rho[j]) * F;
                 a[i] = a[i] + (artificial - term(i) - term(j)) * gradW + laminar * u;
             }
     }
-    // What the program divides by, so that on a lattice density, gradient and Laplacian are exact.
-    struct Moments { double kernel = 0, gradient = 0, laplacian = 0; };
+    // What the program divides by, so that on a lattice density and gradient are exact.
+    struct Moments { double kernel = 0, gradient = 0; };
     static Moments latticeMoments(const Scene& s) {
         const double ratio = s.simulation.support;
         const int dim = s.simulation.dimensions, across = dim == 3 ? 4 : 0;
@@ -151,9 +158,7 @@ struct BruteForce {
                     const double value = scale / std::pow(ratio, dim);
                     m.kernel += value * w(s.simulation.kernel, r / ratio, dim);
                     if (r == 0 || r >= ratio) continue;
-                    const double pull = -value * derivative(s.simulation.kernel, r / ratio, dim) / ratio * x * x / r;
-                    m.gradient += pull;
-                    m.laplacian += pull * r * r / (r * r + 0.01 * ratio * ratio / 4);
+                    m.gradient -= value * derivative(s.simulation.kernel, r / ratio, dim) / ratio * x * x / r;
                 }
         return m;
     }

@@ -1,0 +1,109 @@
+#include "app/validate.h"
+
+#include "core/error.h"
+#include "measure/output_file.h"
+#include "measure/validation.h"
+#include "scene/check.h"
+#include "scene/json.h"
+#include "scene/suggest.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace spindrift {
+namespace {
+
+std::vector<ValidationCase> wanted(const ValidateOptions& options) {
+    std::vector<ValidationCase> all = validationCases(configsFolder() + "/validation/data"), chosen;
+    if (options.cases.empty()) return all;
+    std::vector<std::string> names;
+    for (const ValidationCase& c : all) names.push_back(c.name);
+    for (const std::string& name : options.cases) {
+        const auto found = std::find(names.begin(), names.end(), name);
+        if (found == names.end()) {
+            const std::string nearest = nearestName(name, names);
+            throw Error(Exit::Usage, fmt::format("{}: no such case; {}cases: {}", name,
+                                                 nearest.empty() ? "" : fmt::format("did you mean {}? ", nearest), listed(names)));
+        }
+        chosen.push_back(all[size_t(found - names.begin())]);
+    }
+    return chosen;
+}
+
+Scene sceneFor(const ValidationCase& c, int resolution, const ValidateOptions& options) {
+    Scene scene = loadScene(findScene("validation/" + c.scene));
+    c.adjust(scene, resolution);
+    applyChoices(scene, options.choices);
+    checkScene(scene, c.name);
+    return scene;
+}
+
+// Between two runs of one case, of its first metric; NaN without a run before.
+double order(const ValidationRun* before, const ValidationRun& run) {
+    if (!before || before->metrics.empty()) return std::numeric_limits<double>::quiet_NaN();
+    return std::log(std::abs(before->metrics[0].value / run.metrics[0].value)) / std::log(double(run.resolution) / before->resolution);
+}
+
+void print(const ValidationCase& c, const ValidationRun& run, double order) {
+    fmt::print("\n{} = {}: {}, {} + {} particles, {} steps, {:.1f} s", c.length, run.resolution, run.method, run.cost.particles,
+               run.cost.walls, run.cost.steps, run.cost.seconds);
+    fmt::print("{}\n", std::isfinite(order) ? fmt::format(", order {:.2f}", order) : "");
+    for (const Metric& m : run.metrics) {
+        const bool missed = m.target && !(std::abs(m.value) <= *m.target);
+        fmt::print("  {:36} {:>11.4g} {:3}{}\n", m.name, m.value, m.unit,
+                   m.target ? fmt::format("  target {:g}{}", *m.target, missed ? "  MISSED" : "") : "");
+    }
+    std::fflush(stdout);
+}
+
+nlohmann::json describe(const ValidationCase& c, const ValidationRun& run, double order) {
+    nlohmann::json metrics = nlohmann::json::array();
+    for (const Metric& m : run.metrics) {
+        nlohmann::json row = {{"name", m.name}, {"unit", m.unit}, {"value", m.value}};
+        if (m.target) row["target"] = *m.target, row["passed"] = std::abs(m.value) <= *m.target;
+        metrics.push_back(row);
+    }
+    return {{"case", c.name}, {"title", c.title}, {"reference", c.reference}, {"method", run.method}, {"resolution", run.resolution},
+            {"particles", run.cost.particles}, {"boundary", run.cost.walls}, {"steps", run.cost.steps},
+            {"seconds", run.cost.seconds}, {"megabytes", run.cost.megabytes}, {"order", order}, {"metrics", metrics}};
+}
+
+}  // namespace
+
+int validate(const ValidateOptions& options) {
+    const std::vector<ValidationCase> cases = wanted(options);
+    if (options.list) {
+        for (const ValidationCase& c : cases) fmt::print("{:22} {}\n", c.name, c.title);
+        return int(Exit::Ok);
+    }
+    if (!options.out.empty()) requireFolder(options.out);
+    nlohmann::json rows = nlohmann::json::array();
+    int judged = 0, passed = 0;
+    for (const ValidationCase& c : cases) {
+        const std::vector<int>& resolutions = !options.resolutions.empty() ? options.resolutions : options.quick ? c.quick : c.resolutions;
+        if (resolutions.empty()) continue;
+        fmt::print("\n=== {} ({}), against {}\n", c.title, c.name, c.reference);
+        std::optional<ValidationRun> before;
+        for (int resolution : resolutions) {
+            ValidationRun run = validate(c, sceneFor(c, resolution, options), resolution);
+            const double p = order(before ? &*before : nullptr, run);
+            print(c, run, p);
+            rows.push_back(describe(c, run, p));
+            for (const Metric& m : run.metrics)
+                if (m.target) ++judged, passed += std::abs(m.value) <= *m.target;
+            if (!options.out.empty()) {
+                writeText(fmt::format("{}/{}_{}.svg", options.out, c.name, resolution), svg(run.chart));
+                writeText(options.out + "/validation.json", rows.dump(2) + "\n");
+            }
+            before = std::move(run);
+        }
+    }
+    fmt::print("\n{} of {} targets met\n", passed, judged);
+    return int(passed == judged ? Exit::Ok : Exit::Different);
+}
+
+}  // namespace spindrift

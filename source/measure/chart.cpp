@@ -1,0 +1,113 @@
+#include "measure/chart.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace spindrift {
+namespace {
+
+constexpr double Width = 720, Height = 460, Left = 78, Right = 24, Top = 44, Bottom = 58;
+// Colours that colour-blind eyes tell apart (Okabe and Ito).
+constexpr const char* Colors[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"};
+
+std::string escaped(const std::string& text) {
+    std::string out;
+    for (char c : text) {
+        if (c == '<') out += "&lt;";
+        else if (c == '>') out += "&gt;";
+        else if (c == '&') out += "&amp;";
+        else out += c;
+    }
+    return out;
+}
+
+// Values to pixels along one axis, and where its ticks are.
+struct Scale {
+    bool log = false;
+    double low = 0, high = 1, from = 0, to = 1;
+    std::vector<double> ticks;
+
+    bool shows(double v) const { return std::isfinite(v) && (!log || v > 0); }
+    double map(double v) const { return log ? std::log10(v) : v; }
+    double pixel(double v) const { return from + (map(v) - low) / (high - low) * (to - from); }
+};
+
+Scale scaleOf(const Chart& chart, bool vertical) {
+    Scale s;
+    s.log = vertical ? chart.logY : chart.logX;
+    s.from = vertical ? Height - Bottom : Left, s.to = vertical ? Top : Width - Right;
+    double low = 1e300, high = -1e300;
+    for (const Curve& c : chart.curves)
+        for (double v : vertical ? c.y : c.x)
+            if (s.shows(v)) low = std::min(low, s.map(v)), high = std::max(high, s.map(v));
+    if (low > high) low = 0, high = 1;
+    if (high - low < 1e-12 * std::max(1.0, std::abs(high))) low -= 0.5, high += 0.5;
+    const double step = [&] {
+        const double rough = (high - low) / 6, power = std::pow(10, std::floor(std::log10(rough)));
+        for (double m : {1.0, 2.0, 5.0})
+            if (m * power >= rough) return m * power;
+        return 10 * power;
+    }();
+    s.low = vertical ? low - 0.04 * (high - low) : low, s.high = vertical ? high + 0.04 * (high - low) : high;
+    for (double v = std::ceil(s.low / step) * step; v <= s.high + 1e-9 * step; v += step)
+        s.ticks.push_back(std::abs(v) < 1e-9 * step ? 0 : v);
+    return s;
+}
+
+std::string axis(const Scale& s, bool vertical, const std::string& label) {
+    std::string out;
+    for (double tick : s.ticks) {
+        const double at = s.from + (tick - s.low) / (s.high - s.low) * (s.to - s.from);
+        const std::string text = fmt::format("{:.3g}", s.log ? std::pow(10, tick) : tick);
+        out += vertical ? fmt::format("<path d='M{} {:.1f}H{}' class='grid'/><text x='{}' y='{:.1f}' text-anchor='end'>{}</text>\n",
+                                      Left, at, Width - Right, Left - 8, at + 4, text)
+                        : fmt::format("<path d='M{:.1f} {}V{}' class='grid'/><text x='{:.1f}' y='{}' text-anchor='middle'>{}</text>\n",
+                                      at, Top, Height - Bottom, at, Height - Bottom + 18, text);
+    }
+    out += vertical ? fmt::format("<text transform='translate(18 {}) rotate(-90)' text-anchor='middle'>{}</text>\n",
+                                  (Top + Height - Bottom) / 2, escaped(label))
+                    : fmt::format("<text x='{}' y='{}' text-anchor='middle'>{}</text>\n", (Left + Width - Right) / 2, Height - 16,
+                                  escaped(label));
+    return out;
+}
+
+std::string drawn(const Curve& c, const Scale& x, const Scale& y, const char* color) {
+    std::string points, dots;
+    for (size_t i = 0; i < std::min(c.x.size(), c.y.size()); ++i) {
+        if (!x.shows(c.x[i]) || !y.shows(c.y[i])) continue;
+        const double px = x.pixel(c.x[i]), py = y.pixel(c.y[i]);
+        points += fmt::format("{:.1f},{:.1f} ", px, py);
+        dots += fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='3'/>", px, py);
+    }
+    if (c.style == Curve::Points) return fmt::format("<g fill='{}'>{}</g>\n", color, dots);
+    return fmt::format("<polyline points='{}' fill='none' stroke='{}' stroke-width='2'{}/>\n", points, color,
+                       c.style == Curve::Dashed ? " stroke-dasharray='7 5'" : "");
+}
+
+}  // namespace
+
+std::string svg(const Chart& chart) {
+    const Scale x = scaleOf(chart, false), y = scaleOf(chart, true);
+    std::string out = fmt::format("<svg xmlns='http://www.w3.org/2000/svg' width='{0}' height='{1}' viewBox='0 0 {0} {1}' "
+                                  "font-family='sans-serif' font-size='13'>\n<style>.grid{{stroke:#ddd;fill:none}}</style>\n"
+                                  "<rect width='100%' height='100%' fill='white'/>\n<text x='{2}' y='24' font-size='16'>{3}</text>\n",
+                                  Width, Height, Left, escaped(chart.title));
+    out += axis(x, false, chart.xLabel) + axis(y, true, chart.yLabel);
+    double row = Top + 18;
+    for (size_t k = 0; k < chart.curves.size(); ++k) {
+        const char* color = Colors[k % std::size(Colors)];
+        const Curve& c = chart.curves[k];
+        out += drawn(c, x, y, color);
+        out += c.style == Curve::Points
+                   ? fmt::format("<circle cx='{}' cy='{}' r='3' fill='{}'/>", Width - 212, row - 4, color)
+                   : fmt::format("<path d='M{} {}h24' stroke='{}' stroke-width='2'{}/>", Width - 224, row - 4, color,
+                                 c.style == Curve::Dashed ? " stroke-dasharray='7 5'" : "");
+        out += fmt::format("<text x='{}' y='{}'>{}</text>\n", Width - 192, row, escaped(c.name));
+        row += 18;
+    }
+    return out + "</svg>\n";
+}
+
+}  // namespace spindrift

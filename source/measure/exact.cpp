@@ -1,0 +1,60 @@
+#include "measure/exact.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace spindrift {
+
+using std::numbers::pi;
+
+double TaylorGreenFlow::decay(double t) const { return std::exp(-8 * pi * pi * nu * t / (L * L)); }
+
+Vec3d TaylorGreenFlow::velocity(Vec3d p, double t) const {
+    const double x = 2 * pi * p.x / L, y = 2 * pi * p.y / L, u = U * decay(t);
+    return {-u * std::cos(x) * std::sin(y), u * std::sin(x) * std::cos(y), 0};
+}
+
+double TaylorGreenFlow::pressure(Vec3d p, double t) const {
+    const double x = 4 * pi * p.x / L, y = 4 * pi * p.y / L, u = U * decay(t);
+    return -rho0 * u * u / 4 * (std::cos(x) + std::cos(y));
+}
+
+// Terms beyond these are below 1e-12 at any time that a run reaches.
+static constexpr int Terms = 400;
+
+double poiseuilleFlow(double y, double t, double L, double nu, double F) {
+    double u = F / (2 * nu) * y * (L - y);
+    for (int n = 0; n < Terms; ++n) {
+        const double k = (2 * n + 1) * pi / L;
+        u -= 4 * F / (nu * L * k * k * k) * std::sin(k * y) * std::exp(-k * k * nu * t);
+    }
+    return u;
+}
+
+double couetteFlow(double y, double t, double L, double nu, double V) {
+    double u = V * y / L;
+    for (int n = 1; n < Terms; ++n) {
+        const double k = n * pi / L;
+        u += 2 * V / (n * pi) * (n % 2 ? -1 : 1) * std::sin(k * y) * std::exp(-k * k * nu * t);
+    }
+    return u;
+}
+
+void OscillatingDrop::advance(double dt) {
+    struct State { double a, rate; };
+    auto slope = [](State s) -> State {
+        const double a2 = s.a * s.a, b2 = 1 / a2;   // the area stays
+        return {s.rate * s.a, (s.rate * s.rate + 1) * (b2 - a2) / (a2 + b2)};
+    };
+    auto along = [](State s, double h, State d) -> State { return {s.a + h * d.a, s.rate + h * d.rate}; };
+    const int steps = int(std::ceil(dt / 1e-3));
+    const double h = steps > 0 ? dt / steps : 0;
+    State s{a, rate};
+    for (int k = 0; k < steps; ++k) {   // Runge-Kutta, fourth order
+        const State k1 = slope(s), k2 = slope(along(s, h / 2, k1)), k3 = slope(along(s, h / 2, k2)), k4 = slope(along(s, h, k3));
+        s = {s.a + h / 6 * (k1.a + 2 * k2.a + 2 * k3.a + k4.a), s.rate + h / 6 * (k1.rate + 2 * k2.rate + 2 * k3.rate + k4.rate)};
+    }
+    a = s.a, rate = s.rate;
+}
+
+}  // namespace spindrift

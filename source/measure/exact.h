@@ -1,0 +1,28 @@
+#pragma once
+// Flows whose solution is known. SI units, or any consistent ones.
+#include "core/vec.h"
+
+namespace spindrift {
+
+// Vortices in a periodic square of side L, largest speed U at t = 0, rho0 the density: Taylor and Green 1937.
+struct TaylorGreenFlow {
+    double L = 1, U = 1, nu = 0.01, rho0 = 1;
+    Vec3d velocity(Vec3d x, double t) const;   // m/s, x in m from a corner
+    double pressure(Vec3d x, double t) const;  // Pa, mean 0
+    double decay(double t) const;              // of the velocity
+};
+
+// Flow between plates at y = 0 and y = L from rest: driven by a body force F (m/s^2) along x, or by the upper plate that slides
+// with V (m/s). Morris, Fox and Zhu 1997, eq. 21 and 22.
+double poiseuilleFlow(double y, double t, double L, double nu, double F);
+double couetteFlow(double y, double t, double L, double nu, double V);
+
+// A disc of radius 1 stretched along x with rate s0 = 1/s at the start, pulled to its centre by -Omega^2 r, Omega = 1/s: an ellipse
+// at all times (Monaghan and Rafiee 2013, appendix A).
+struct OscillatingDrop {
+    double a = 1, rate = 1;              // m, semi-axis along x; 1/s, its relative growth
+    static constexpr double period = 4.827343;   // s, of both
+    void advance(double dt);             // s
+};
+
+}  // namespace spindrift

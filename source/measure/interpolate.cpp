@@ -1,0 +1,58 @@
+#include "measure/interpolate.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace spindrift {
+namespace {
+
+// The first row of the solution of A c = b for four right-hand sides; by elimination with pivots. What is singular (all
+// neighbours in a plane, a line, a point) loses that direction.
+constexpr int N = 4, Sides = 4;
+struct Equations {
+    double a[N][N] = {}, b[N][Sides] = {};
+
+    void add(const double (&basis)[N], const double (&values)[Sides], double weight) {
+        for (int r = 0; r < N; ++r) {
+            for (int c = 0; c < N; ++c) a[r][c] += weight * basis[r] * basis[c];
+            for (int s = 0; s < Sides; ++s) b[r][s] += weight * basis[r] * values[s];
+        }
+    }
+    // Elimination from the last unknown to the first, so that the first is known without going back.
+    void solve(double (&out)[Sides]) {
+        for (int k = N - 1; k > 0; --k) {
+            if (a[k][k] < 1e-6 * a[0][0]) continue;   // no extent in this direction
+            for (int r = 0; r < k; ++r) {
+                const double factor = a[r][k] / a[k][k];
+                for (int c = 0; c < k; ++c) a[r][c] -= factor * a[k][c];
+                for (int s = 0; s < Sides; ++s) b[r][s] -= factor * b[k][s];
+            }
+        }
+        for (int s = 0; s < Sides; ++s) out[s] = a[0][0] > 0 ? b[0][s] / a[0][0] : 0;
+    }
+};
+
+}  // namespace
+
+std::vector<Fields> interpolate(const std::vector<Particle>& particles, const std::vector<Vec3d>& points, double radius) {
+    std::vector<Fields> out;
+    for (const Vec3d& x : points) {
+        Equations equations;
+        int neighbours = 0;
+        for (const Particle& p : particles) {
+            const Vec3d r = (1 / radius) * (p.position - x);
+            const double q = length(r);
+            if (q >= 1) continue;
+            ++neighbours;
+            const double basis[N] = {1, r.x, r.y, r.z};
+            const double values[Sides] = {p.velocity.x, p.velocity.y, p.velocity.z, p.pressure};
+            equations.add(basis, values, std::pow(1 - q, 4) * (1 + 4 * q));
+        }
+        double f[Sides];
+        equations.solve(f);
+        out.push_back({{f[0], f[1], f[2]}, f[3], neighbours});
+    }
+    return out;
+}
+
+}  // namespace spindrift
