@@ -1,10 +1,10 @@
 # The front door: every target installs what is missing, configures, builds, then does its work.
-#   make run [ARGS="configs/pool.json --threads 2"]   make test   make bench   make build
+#   make run [ARGS="configs/pool.json --threads 2"]   make test   make bench   make validate   make build
 BUILD ?= build
 ARGS ?=
 CMAKE_ARGS ?=
 
-.PHONY: run test build configure bench gpu-check gpu-bundle meson sanitize install clean
+.PHONY: run test build configure bench validate gpu-check gpu-bundle meson sanitize install clean
 
 # Only what it needs: the tests are built by `make build`.
 run: configure
@@ -17,6 +17,11 @@ test: build
 bench: configure
 	@cmake --build $(BUILD) --target spindrift
 	@$(BUILD)/spindrift bench $(ARGS)
+
+# All flows with a known answer, about a quarter of an hour; figures and charts into build/validation. make validate ARGS="cavity_re100"
+validate: configure
+	@cmake --build $(BUILD) --target spindrift
+	@$(BUILD)/spindrift validate --out $(BUILD)/validation $(ARGS)
 
 # All checks and figures of the GPU, into docs/results/; without a GPU a dry run that writes nothing there. Programs that
 # are there already (gpu-bundle made them on a machine with a compiler): make gpu-check BUNDLE=folder

@@ -6,8 +6,8 @@
 namespace spindrift {
 namespace {
 
-// The first row of the solution of A c = b for four right-hand sides; by elimination with pivots. What is singular (all
-// neighbours in a plane, a line, a point) loses that direction.
+// The first unknown of the normal equations for four right-hand sides at once: the field's value. Where all neighbours lie in a
+// plane, a line or a point, the slopes across it are taken as 0.
 constexpr int N = 4, Sides = 4;
 struct Equations {
     double a[N][N] = {}, b[N][Sides] = {};
@@ -18,17 +18,25 @@ struct Equations {
             for (int s = 0; s < Sides; ++s) b[r][s] += weight * basis[r] * values[s];
         }
     }
-    // Elimination from the last unknown to the first, so that the first is known without going back.
     void solve(double (&out)[Sides]) {
-        for (int k = N - 1; k > 0; --k) {
-            if (a[k][k] < 1e-6 * a[0][0]) continue;   // no extent in this direction
-            for (int r = 0; r < k; ++r) {
-                const double factor = a[r][k] / a[k][k];
-                for (int c = 0; c < k; ++c) a[r][c] -= factor * a[k][c];
-                for (int s = 0; s < Sides; ++s) b[r][s] -= factor * b[k][s];
-            }
+        if (a[0][0] <= 0) {
+            std::fill(out, out + Sides, 0.0);
+            return;
         }
-        for (int s = 0; s < Sides; ++s) out[s] = a[0][0] > 0 ? b[0][s] / a[0][0] : 0;
+        // About the neighbours' mean place the slopes' equations stand alone; then from the last slope to the first.
+        for (int r = 1; r < N; ++r) eliminate(r, 0);
+        for (int k = N - 1; k > 0; --k)
+            if (a[k][k] > 1e-9 * a[0][0])
+                for (int r = 0; r < k; ++r) eliminate(r, k);
+        for (int s = 0; s < Sides; ++s) out[s] = b[0][s] / a[0][0];
+    }
+
+private:
+    // Takes column k out of row r.
+    void eliminate(int r, int k) {
+        const double factor = a[r][k] / a[k][k];
+        for (int c = 0; c < N; ++c) a[r][c] -= factor * a[k][c];
+        for (int s = 0; s < Sides; ++s) b[r][s] -= factor * b[k][s];
     }
 };
 

@@ -26,6 +26,16 @@ TEST_F(Restart, GoesOnWithTheSameBitsForAnyNumberOfThreads) {
     EXPECT_LT(read("half.h5").state.clock.time, 0.03);
 }
 
+TEST_F(Restart, DensityThatIsCarriedGoesOnToo) {
+    const std::string run = "validation/cavity --headless --backend cpu --quiet --set output.checkpoint_every=0.1 ";
+    ASSERT_EQ(call(run + "--time 0.3 --checkpoint whole.h5").code, 0);
+    ASSERT_EQ(call(run + "--time 0.1 --checkpoint half.h5").code, 0);
+    ASSERT_EQ(call("half.h5 --headless --quiet --time 0.3 --checkpoint rest.h5").code, 0);
+    expectSame(read("whole.h5"), read("rest.h5"));
+    EXPECT_EQ(read("whole.h5").state.densities, read("rest.h5").state.densities);
+    EXPECT_EQ(read("rest.h5").state.densities.size(), 2500u);
+}
+
 TEST_F(Restart, LiveKnobsMayChangeOthersNot) {
     ASSERT_EQ(call(Run + "--steps 5 --checkpoint a.h5").code, 0);
     EXPECT_EQ(call("a.h5 --headless --quiet --steps 2 --set fluid.viscosity=0.2").code, 0);

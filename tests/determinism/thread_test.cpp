@@ -10,7 +10,7 @@ namespace spindrift {
 namespace {
 
 uint64_t hashAfter(const std::string& file, int threads, int steps, int change = 0) {
-    Scene scene = loadScene(std::string(SPINDRIFT_SOURCE_DIR) + "/configs/test/" + file);
+    Scene scene = loadScene(std::string(SPINDRIFT_SOURCE_DIR) + "/configs/" + file);
     scene.compute.threads = threads;
     scene.simulation.gravity.x += 1e-3f * float(change);
     auto simulation = makeSimulation(scene);
@@ -33,7 +33,8 @@ TEST_P(Determinism, SameBitsForOneTwoAndThreeThreads) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Determinism,
-                         testing::Values("dam_break_small.json", "ball_drop_small.json", "historical_small.json"));
+                         testing::Values("test/dam_break_small.json", "test/ball_drop_small.json", "test/historical_small.json",
+                                         "validation/hydrostatic.json", "validation/cavity.json"));
 
 }  // namespace
 }  // namespace spindrift

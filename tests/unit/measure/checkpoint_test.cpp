@@ -48,7 +48,7 @@ protected:
     static bool same(const Checkpoint& a, const Scene& scene, const RunState& b) {
         return writeScene(a.scene) == writeScene(scene) && a.state.particles.positions == b.particles.positions &&
                a.state.particles.velocities == b.particles.velocities && a.state.particles.walls == b.particles.walls &&
-               a.state.clock.time == b.clock.time && a.state.clock.dt == b.clock.dt && a.state.clock.steps == b.clock.steps &&
+               a.state.densities == b.densities && a.state.clock.time == b.clock.time && a.state.clock.dt == b.clock.dt && a.state.clock.steps == b.clock.steps &&
                a.state.start.low == b.start.low && a.state.start.high == b.start.high && a.state.start.speed == b.start.speed;
     }
     // "" when it reads as what was written, "another" when as something else, else what the error says.
@@ -77,8 +77,13 @@ TEST_F(Checkpoints, ReadsWhatWasWrittenBitByBit) {
     writeCheckpoint(file, scene, state);
     EXPECT_EQ(bytesOf(file), first) << "the same state gives another file";
     state.particles.walls.clear();
+    scene.simulation.formulation = Formulation::DeltaSph;
+    state.densities.assign(state.particles.positions.size(), 998.5f);
     writeCheckpoint(file, scene, state);
     EXPECT_EQ(outcome(file), "");
+    state.densities[7] = -1;
+    writeCheckpoint(file, scene, state);
+    EXPECT_NE(outcome(file).find("densities"), std::string::npos) << outcome(file);
     EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1) << "leaves something beside it";
 }
 

@@ -53,6 +53,11 @@ TEST(CheckScene, RefusesNonsenseByPathAndRemedy) {
         {{"fluid.bodies[0].shape=sphere", "fluid.bodies[0].radius=0.2"}, "outside the domain's"},
         {{"compute.threads=4000", "fluid.bodies[0].max=0.1,0.1,0.1"},
          "compute.threads: 4000 threads are more than the 125 particles"},
+        {{"simulation.formulation=transport_velocity"}, "has no free surfaces, and fluid fills 19 % of the domain"},
+        {{"walls.moving_face=x_min", "walls.velocity=1,0,0"}, "walls.velocity: x = 1 m/s leads out of the face"},
+        {{"walls.moving_face=x_min", "domain.periodic_x=true"}, "walls.moving_face: there is no wall at x_min"},
+        {{"walls.moving_face=y_max", "walls.kind=reflect"}, "walls.moving_face: nothing sticks to it"},
+        {{"walls.moving_face=y_max", "fluid.viscosity=0"}, "walls.moving_face: nothing sticks to it"},
         {{"view.range=fixed", "view.range_min=2"},
          "view.range_max: 1 is not above view.range_min 2"},
     };
