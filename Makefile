@@ -4,7 +4,7 @@ BUILD ?= build
 ARGS ?=
 CMAKE_ARGS ?=
 
-.PHONY: run test build configure bench validate gpu-check gpu-bundle meson sanitize install clean
+.PHONY: run test build configure bench validate stress gpu-check gpu-bundle meson sanitize install clean
 
 # Only what it needs: the tests are built by `make build`.
 run: configure
@@ -22,6 +22,11 @@ bench: configure
 validate: configure
 	@cmake --build $(BUILD) --target spindrift
 	@$(BUILD)/spindrift validate --out $(BUILD)/validation $(ARGS)
+
+# Runs that are meant to break the physics, all of them: half an hour.
+stress: configure
+	@cmake --build $(BUILD) --target spindrift
+	@$(BUILD)/spindrift stress --full --out $(BUILD)/stress $(ARGS)
 
 # All checks and figures of the GPU, into docs/results/; without a GPU a dry run that writes nothing there. Programs that
 # are there already (gpu-bundle made them on a machine with a compiler): make gpu-check BUNDLE=folder

@@ -2,9 +2,11 @@
 
 #include "app/bench.h"
 #include "app/compare.h"
+#include "app/error_bench.h"
 #include "app/explain.h"
 #include "app/headless.h"
 #include "app/scene_choice.h"
+#include "app/stress.h"
 #include "app/validate.h"
 #include "core/error.h"
 #include "measure/output_file.h"
@@ -216,7 +218,7 @@ CLI::App* addCompare(CLI::App& app, CompareOptions& options) {
     return command;
 }
 
-CLI::App* addBench(CLI::App& app, BenchOptions& options) {
+CLI::App* addBench(CLI::App& app, BenchOptions& options, bool& error, ErrorBenchOptions& errorOptions) {
     CLI::App* command = app.add_subcommand("bench", "times whole steps and their passes");
     command->add_option("--only", options.only, "cases whose name contains this")->type_name("TEXT");
     command->add_option("--json", options.json, "writes the figures as JSON")->type_name("FILE");
@@ -226,6 +228,20 @@ CLI::App* addBench(CLI::App& app, BenchOptions& options) {
     command->add_flag("--gpu", options.gpu, "the GPU's cases instead: up to 100 million particles, frames, switching");
     command->add_option("--most", options.most, "leaves out the GPU's cases with more particles")->type_name("N")
         ->check(CLI::PositiveNumber);
+    command->add_flag("--error", error, "run time against error instead, of flows with known answers; half an hour");
+    command->add_option("--case", errorOptions.cases, "with --error: only this flow; may be repeated")->type_name("NAME")
+        ->allow_extra_args(false);
+    command->add_option("--out", errorOptions.out, "with --error: folder for tables and charts")->type_name("FOLDER");
+    return command;
+}
+
+CLI::App* addStress(CLI::App& app, StressOptions& options) {
+    CLI::App* command = app.add_subcommand("stress", "runs that are meant to break the physics; two minutes");
+    command->add_option("--only", options.only, "tortures whose name contains this, no random scenes")->type_name("TEXT");
+    command->add_option("--random", options.random, "number of random scenes")->type_name("N")->check(CLI::Range(0, 1000000));
+    command->add_option("--seed", options.seed, "of the first random scene")->type_name("N");
+    command->add_flag("--full", options.full, "also what takes many minutes, and maps of what is stable");
+    command->add_option("--out", options.out, "folder for stability.json and stability.md")->type_name("FOLDER");
     return command;
 }
 
@@ -268,9 +284,13 @@ int runCommandLine(int argc, const char* const* argv) {
     const CLI::App* explainCommand = addExplain(app, explained);
     const CLI::App* compareCommand = addCompare(app, comparison);
     BenchOptions benchmark;
-    const CLI::App* benchCommand = addBench(app, benchmark);
+    bool benchesError = false;
+    ErrorBenchOptions errorBenchmark;
+    const CLI::App* benchCommand = addBench(app, benchmark, benchesError, errorBenchmark);
     ValidateOptions validation;
     const CLI::App* validateCommand = addValidate(app, validation);
+    StressOptions stressOptions;
+    const CLI::App* stressCommand = addStress(app, stressOptions);
     const CLI::App* schemaCommand =
         app.add_subcommand("schema", "writes the JSON Schema of scene files");
     app.set_help_flag();
@@ -285,7 +305,8 @@ int runCommandLine(int argc, const char* const* argv) {
     if (*runCommand) return runScene(run);
     if (*explainCommand) return explain(chooseScene(explained.scene, explained.choices));
     if (*compareCommand) return compare(comparison);
-    if (*benchCommand) return bench(benchmark);
+    if (*benchCommand) return benchesError ? benchError(errorBenchmark) : bench(benchmark);
+    if (*stressCommand) return stress(stressOptions);
     if (*validateCommand) return validate(validation);
     if (*schemaCommand) writeText("-", jsonSchema());
     return int(Exit::Ok);

@@ -15,24 +15,25 @@
 #include <limits>
 
 namespace spindrift {
-namespace {
 
-std::vector<ValidationCase> wanted(const ValidateOptions& options) {
-    std::vector<ValidationCase> all = validationCases(configsFolder() + "/validation/data"), chosen;
-    if (options.cases.empty()) return all;
-    std::vector<std::string> names;
-    for (const ValidationCase& c : all) names.push_back(c.name);
-    for (const std::string& name : options.cases) {
-        const auto found = std::find(names.begin(), names.end(), name);
-        if (found == names.end()) {
-            const std::string nearest = nearestName(name, names);
+std::vector<ValidationCase> chooseCases(const std::vector<ValidationCase>& all, const std::vector<std::string>& names) {
+    if (names.empty()) return all;
+    std::vector<std::string> known;
+    for (const ValidationCase& c : all) known.push_back(c.name);
+    std::vector<ValidationCase> chosen;
+    for (const std::string& name : names) {
+        const auto found = std::find(known.begin(), known.end(), name);
+        if (found == known.end()) {
+            const std::string nearest = nearestName(name, known);
             throw Error(Exit::Usage, fmt::format("{}: no such case; {}cases: {}", name,
-                                                 nearest.empty() ? "" : fmt::format("did you mean {}? ", nearest), listed(names)));
+                                                 nearest.empty() ? "" : fmt::format("did you mean {}? ", nearest), listed(known)));
         }
-        chosen.push_back(all[size_t(found - names.begin())]);
+        chosen.push_back(all[size_t(found - known.begin())]);
     }
     return chosen;
 }
+
+namespace {
 
 Scene sceneFor(const ValidationCase& c, int resolution, const ValidateOptions& options) {
     Scene scene = loadScene(findScene("validation/" + c.scene));
@@ -75,16 +76,22 @@ nlohmann::json describe(const ValidationCase& c, const ValidationRun& run, doubl
 }  // namespace
 
 int validate(const ValidateOptions& options) {
-    const std::vector<ValidationCase> cases = wanted(options);
+    const std::vector<ValidationCase> cases = chooseCases(validationCases(configsFolder() + "/validation/data"), options.cases);
     if (options.list) {
         for (const ValidationCase& c : cases) fmt::print("{:22} {}\n", c.name, c.title);
         return int(Exit::Ok);
     }
     if (!options.out.empty()) requireFolder(options.out);
+    auto resolutionsOf = [&](const ValidationCase& c) {
+        return !options.resolutions.empty() ? options.resolutions : options.quick ? c.quick : c.resolutions;
+    };
+    // An hour of computing must not end at a mistake.
+    for (const ValidationCase& c : cases)
+        for (int resolution : resolutionsOf(c)) sceneFor(c, resolution, options);
     nlohmann::json rows = nlohmann::json::array();
     int judged = 0, passed = 0;
     for (const ValidationCase& c : cases) {
-        const std::vector<int>& resolutions = !options.resolutions.empty() ? options.resolutions : options.quick ? c.quick : c.resolutions;
+        const std::vector<int> resolutions = resolutionsOf(c);
         if (resolutions.empty()) continue;
         fmt::print("\n=== {} ({}), against {}\n", c.title, c.name, c.reference);
         std::optional<ValidationRun> before;

@@ -1,6 +1,8 @@
 #pragma once
 #include "app/scene_choice.h"
 
+#include "measure/validation.h"
+
 #include <string>
 #include <vector>
 
@@ -13,6 +15,9 @@ struct ValidateOptions {
     std::string out;                     // folder of JSON and charts, "" = none
     bool quick = false, list = false;
 };
+
+// Those of `all` with these names, in their order; all when there are no names. Throws Error (Usage).
+std::vector<ValidationCase> chooseCases(const std::vector<ValidationCase>& all, const std::vector<std::string>& names);
 
 // Runs the cases and prints how wrong each is, beside its target. Returns Exit::Different when one is missed. Throws Error.
 int validate(const ValidateOptions&);

@@ -18,14 +18,14 @@ struct Equations {
             for (int s = 0; s < Sides; ++s) b[r][s] += weight * basis[r] * values[s];
         }
     }
-    void solve(double (&out)[Sides]) {
+    void solve(double (&out)[Sides], Order order) {
         if (a[0][0] <= 0) {
             std::fill(out, out + Sides, 0.0);
             return;
         }
         // About the neighbours' mean place the slopes' equations stand alone; then from the last slope to the first.
         for (int r = 1; r < N; ++r) eliminate(r, 0);
-        for (int k = N - 1; k > 0; --k)
+        for (int k = N - 1; k > 0 && order == Order::Linear; --k)
             if (a[k][k] > 1e-9 * a[0][0])
                 for (int r = 0; r < k; ++r) eliminate(r, k);
         for (int s = 0; s < Sides; ++s) out[s] = b[0][s] / a[0][0];
@@ -42,7 +42,8 @@ private:
 
 }  // namespace
 
-std::vector<Fields> interpolate(const std::vector<Particle>& particles, const std::vector<Vec3d>& points, double radius) {
+std::vector<Fields> interpolate(const std::vector<Particle>& particles, const std::vector<Vec3d>& points, double radius,
+                                Order order) {
     std::vector<Fields> out;
     for (const Vec3d& x : points) {
         Equations equations;
@@ -57,7 +58,7 @@ std::vector<Fields> interpolate(const std::vector<Particle>& particles, const st
             equations.add(basis, values, std::pow(1 - q, 4) * (1 + 4 * q));
         }
         double f[Sides];
-        equations.solve(f);
+        equations.solve(f, order);
         out.push_back({{f[0], f[1], f[2]}, f[3], neighbours});
     }
     return out;

@@ -29,20 +29,24 @@ public:
     Simulation& operator*() { return *simulation_; }
     Simulation* operator->() { return simulation_.get(); }
     double time() { return simulation_->measure().time; }
+    void steps(int count) {
+        const auto start = std::chrono::steady_clock::now();
+        simulation_->step(count);
+        simulation_->wait();
+        run_.cost.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        const Measurement m = simulation_->measure();
+        run_.diverged = !m.finite;
+        run_.cost.steps = m.steps;
+        run_.cost.megabytes = double(simulation_->bytes()) / 1e6;
+    }
     // Until `time` (s) is reached, at most a step beyond; stops early when the run has become nothing.
     void until(double time) {
         Measurement m = simulation_->measure();
         while (m.time < time && m.finite) {
             const int most = m.dt > 0 ? std::clamp(int((time - m.time) / m.dt / 1.5), 1, 200) : 1;
-            const auto start = std::chrono::steady_clock::now();
-            simulation_->step(most);
-            simulation_->wait();
-            run_.cost.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+            steps(most);
             m = simulation_->measure();
         }
-        run_.diverged = !m.finite;
-        run_.cost.steps = m.steps;
-        run_.cost.megabytes = double(simulation_->bytes()) / 1e6;
     }
 
 private:
@@ -310,6 +314,101 @@ void runFront(const Scene& scene, ValidationRun& run, const std::string& data) {
                    {"front, largest difference", "%", 100 * most, {}}};
 }
 
+// --- C13 dam break: pressures on the far wall ---
+
+// Mean over `window` about each time, by trapezoids between samples.
+std::vector<double> runningMean(const std::vector<double>& t, const std::vector<double>& p, double window) {
+    std::vector<double> out;
+    for (double at : t) {
+        double sum = 0;
+        int count = 0;
+        for (size_t k = size_t(std::lower_bound(t.begin(), t.end(), at - window / 2) - t.begin());
+             k < t.size() && t[k] <= at + window / 2; ++k)
+            sum += p[k], ++count;
+        out.push_back(sum / count);
+    }
+    return out;
+}
+
+double integral(const std::vector<double>& t, const std::vector<double>& p, double from, double to) {
+    double sum = 0;
+    for (size_t k = 1; k < t.size(); ++k)
+        if (t[k - 1] >= from && t[k] <= to) sum += (t[k] - t[k - 1]) * (p[k] + p[k - 1]) / 2;
+    return sum;
+}
+
+void runImpact(const Scene& scene, ValidationRun& run, const std::string& data) {
+    const auto experiment = readTable(data + "/lobovsky2014_H300_pressure.csv"), peaks = readTable(data + "/lobovsky2014_H300_peak_pressures.csv");
+    const double H = 0.3, g = -scene.simulation.gravity.y, rho0 = scene.fluid.restDensity, Latest = 4;
+    constexpr double Heights[] = {0.003, 0.015, 0.030}, Diameter = 0.0042;   // m, of the sensors
+    constexpr const char* Columns[] = {"S1_3mm", "S2_15mm", "S3_30mm"};
+    std::vector<Vec3d> points;
+    for (double height : Heights)
+        for (int k = -1; k <= 1; ++k) points.push_back({scene.domain.max.x, height + k * Diameter / 3, 0.5 * scene.domain.max.z});
+    Stepping sim(scene, run);
+    std::vector<double> t, p[3];
+    for (int k = 0; k <= 800; ++k) {
+        sim.until(k * Latest / 800 * std::sqrt(H / g));
+        t.push_back(sim.time() * std::sqrt(g / H));
+        const auto fields = interpolate(sim->particles(), points, supportRadius(scene), Order::Mean);
+        for (size_t s = 0; s < 3; ++s)
+            p[s].push_back((fields[3 * s].pressure + fields[3 * s + 1].pressure + fields[3 * s + 2].pressure) / 3 / (rho0 * g * H));
+    }
+    const std::vector<double>& te = experiment.at("t_star");
+    const double impulse = integral(t, p[0], 2.4, Latest), measured = integral(te, experiment.at(Columns[0]), 2.4, Latest);
+    const auto hit = std::find_if(p[0].begin(), p[0].end(), [](double v) { return v > 0.5; });
+    const double arrival = hit == p[0].end() ? NaN : t[size_t(hit - p[0].begin())];
+    run.metrics = {{"impulse at S1, 2.4 < t* < 4", "%", 100 * (impulse / measured - 1), targetAt(run.resolution, 80, 10.0)},
+                   {"arrival at S1, t* - 2.44", "", arrival - 2.44, targetAt(run.resolution, 80, 0.1)}};
+    run.chart = {"", "t sqrt(g / H)", "p / (rho g H)", {}};
+    for (size_t s = 0; s < 3; ++s) {
+        const std::vector<double> smooth = runningMean(t, p[s], 0.05);
+        const double peak = *std::max_element(smooth.begin(), smooth.end());
+        const double low = peaks.at("p2.5_P")[s], high = peaks.at("p97.5_P")[s];
+        const double outside = std::max({0.0, low - peak, peak - high}) / peaks.at("median_P")[s];
+        run.metrics.push_back({fmt::format("smoothed peak at S{}", s + 1), "", peak, {}});
+        run.metrics.push_back({fmt::format("beyond its 95 % band {:.2f} to {:.2f}", low, high), "%", 100 * outside,
+                               targetAt(run.resolution, 80, 0.0)});
+        Curve theirs{fmt::format("S{} measured", s + 1), te, experiment.at(Columns[s]), Curve::Dashed};
+        const size_t end = size_t(std::lower_bound(te.begin(), te.end(), Latest) - te.begin());
+        theirs.x.resize(end), theirs.y.resize(end);
+        run.chart.curves.push_back({fmt::format("S{}", s + 1), t, smooth, Curve::Line});
+        run.chart.curves.push_back(theirs);
+    }
+}
+
+// --- C18 conservation ---
+
+void runConservation(const Scene& scene, ValidationRun& run) {
+    constexpr int Steps = 10000, Looks = 50;
+    const double c = scene.fluid.soundSpeed, mass = particleMass(scene);
+    Stepping sim(scene, run);
+    // Of a linear equation of state: e = c^2 (ln(rho / rho0) + rho0 / rho - 1).
+    auto energy = [&] {
+        double sum = 0;
+        for (const Particle& p : sim->particles()) {
+            const double ratio = p.density / scene.fluid.restDensity;
+            sum += mass * (dot(p.velocity, p.velocity) / 2 + c * c * (std::log(ratio) + 1 / ratio - 1));
+        }
+        return sum;
+    };
+    const double start = energy(), M = mass * run.cost.particles;
+    const Vec3d momentum = sim->measure().momentum;
+    Curve curve{"kinetic + internal", {}, {}, Curve::Line};
+    double growth = 0, drift = 0, last = start;
+    for (int k = 0; k < Looks; ++k) {
+        sim.steps(Steps / Looks);
+        const double now = energy();
+        growth = std::max(growth, now - last), last = now;
+        drift = std::max(drift, length(sim->measure().momentum - momentum) / M);
+        curve.x.push_back(double(run.cost.steps)), curve.y.push_back(now / start);
+    }
+    run.chart = {"", "steps", "energy / at the start", {curve}};
+    run.metrics = {{"momentum / M U", "", drift, 1e-6},
+                   {"largest growth of energy in 200 steps", "%", 100 * growth / start, 0.01},
+                   {"energy left", "%", 100 * last / start, {}}};
+}
+
 void spacing(Scene& s, int n) { s.simulation.spacing = 1.0f / float(n); }
 
 }  // namespace
@@ -347,6 +446,10 @@ std::vector<ValidationCase> validationCases(const std::string& data) {
         {"drop", "Oscillating drop, s0 = 1", "drop", "Monaghan and Rafiee 2013, ODE", "R / dx", {25, 50}, {}, spacing, runDrop},
         {"dam_break_front", "Dam-break front, n^2 = 2", "dam_break_front", "Martin and Moyce 1952, a = 2.25 in", "a / dx", {20, 40, 80},
          {20}, spacing, [data](const Scene& s, ValidationRun& r) { runFront(s, r, data); }},
+        {"dam_break_pressure", "Dam-break pressures, H = 0.3 m", "dam_break_pressure", "Lobovsky et al. 2014", "H / dx", {40, 80, 160}, {},
+         [](Scene& s, int n) { s.simulation.spacing = 0.3f / float(n); }, [data](const Scene& s, ValidationRun& r) { runImpact(s, r, data); }},
+        {"conservation", "Conservation in a periodic box, 10,000 steps, delta_sph", "taylor_green", "momentum and energy", "L / dx", {64}, {32},
+         [](Scene& s, int n) { spacing(s, n), s.simulation.formulation = Formulation::DeltaSph, s.fluid.viscosity = 0; }, runConservation},
     };
 }
 

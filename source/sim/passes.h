@@ -62,14 +62,16 @@ template <class Kernel> struct ComputeWallMass {
     }
 };
 
-// Density and what follows from it: the equation of state p = max(p_least, k ((rho/rho0)^gamma - 1)).
+// Density and what follows from it: the equation of state p = max(p_least, k ((rho/rho0)^gamma - 1)). A sum over few neighbours says
+// little of the fluid's density: 1/rho, which viscous forces go with twice, is never more than 1.25/rho0. (Without that, single drops at walls were
+// seen to blow up in thick fluid.)
 template <class I> HD inline void storeState(const View& v, I i, Real<I> rho) {
     using R = Real<I>;
     const R ratio = rho * R(1 / v.c.restDensity);
     R power = ratio;
     for (int k = 1; k < v.c.gamma; ++k) power = power * ratio;
     const R pressure = max(R(v.c.stiffness) * (power - R(1)), R(v.c.leastPressure));
-    const R inverse = R(1) / max(rho, R(real(0.01) * v.c.restDensity));
+    const R inverse = R(1) / max(rho, R(real(0.8) * v.c.restDensity));
     store(v.fluid.density, i, rho);
     store(v.fluid.inverseDensity, i, inverse);
     store(v.fluid.pressureTerm, i, pressure * inverse * inverse);

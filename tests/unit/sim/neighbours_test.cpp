@@ -128,8 +128,10 @@ struct BruteForce {
         for (size_t i = 0; i < n; ++i)
             for (size_t j = 0; j < n; ++j)
                 rho[i] += m / std::pow(R, dim) * w(s.simulation.kernel, length(apart(i, j)) / R, dim);
+        // What forces divide by.
+        auto dense = [&](size_t i) { return std::max(rho[i], 0.8 * rho0); };
         auto term = [&](size_t i) {
-            return std::max(0.0, k * (std::pow(rho[i] / rho0, s.fluid.gamma) - 1)) / (rho[i] * rho[i]);
+            return std::max(0.0, k * (std::pow(rho[i] / rho0, s.fluid.gamma) - 1)) / (dense(i) * dense(i));
         };
         for (size_t i = 0; i < n; ++i)
             for (size_t j = 0; j < n; ++j) {
@@ -139,8 +141,8 @@ struct BruteForce {
                 const double F = exactGradient * m / std::pow(R, dim + 2) * slope(s.simulation.kernel, d / R, dim);
                 const Vec3d gradW = F * r;
                 const double meet = std::min(0.0, dot(u, r)) / (d * d + 0.01 * h * h);
-                const double artificial = s.fluid.artificialViscosity * c * h * meet * 0.5 * (1 / rho[i] + 1 / rho[j]);
-                const double laminar = 2 * s.fluid.viscosity / (rho[i] * rho[j]) * F;
+                const double artificial = s.fluid.artificialViscosity * c * h * meet * 0.5 * (1 / dense(i) + 1 / dense(j));
+                const double laminar = 2 * s.fluid.viscosity / (dense(i) * dense(j)) * F;
                 a[i] = a[i] + (artificial - term(i) - term(j)) * gradW + laminar * u;
             }
     }

@@ -1,0 +1,18 @@
+#pragma once
+#include <cstdint>
+#include <string>
+
+namespace spindrift {
+
+struct StressOptions {
+    std::string only, out;      // part of a name; folder of stability.md and stability.json, "" = none
+    int random = 500;           // scenes
+    uint64_t seed = 1;          // of the first one
+    bool full = false;          // what takes minutes, and the maps
+};
+
+// Torture, random scenes and, when full, maps of what is still stable. Returns Exit::Different when a run went wrong and the health guard
+// said nothing. Throws Error.
+int stress(const StressOptions&);
+
+}  // namespace spindrift

@@ -1,0 +1,273 @@
+#include "measure/stress.h"
+
+#include "core/error.h"
+#include "measure/health.h"
+#include "scene/check.h"
+#include "scene/json.h"
+#include "scene/particles.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace spindrift {
+namespace {
+
+// What compressed fluid gives back, J: of p = k ((rho/rho0)^gamma - 1), where that is not cut off at 0. The classic formulation's
+// pressure has none.
+double internalEnergy(const Scene& scene, double sound, Simulation& simulation) {
+    if (scene.simulation.formulation == Formulation::Classic) return 0;
+    const int gamma = scene.fluid.equationOfState == EquationOfState::Linear ? 1 : scene.fluid.gamma;
+    double sum = 0;
+    for (const Particle& p : simulation.particles()) {
+        const double r = p.density / scene.fluid.restDensity;
+        if (r <= 0 || (r < 1 && !carriesDensity(scene))) continue;
+        sum += (gamma == 1 ? std::log(r) : (std::pow(r, gamma - 1) - 1) / (gamma - 1)) + 1 / r - 1;
+    }
+    return particleMass(scene) * sound * sound / gamma * sum;
+}
+
+// Of all forms that energy has in a scene, and what its gain is measured against, J.
+struct Energy {
+    const Scene& scene;
+    Simulation& simulation;
+    double sound = soundSpeed(scene, extentOf(simulation.state().particles));
+    double start = total(simulation.measure()) + unseen();
+    double scale = scaleOf(simulation.measure());
+
+    double total(const Measurement& m) { return m.kineticEnergy + m.potentialEnergy + internalEnergy(scene, sound, simulation); }
+    // What the sums below don't see at the start: a particle on a wall is pushed off to where walls carry it, half a spacing; a squeezed wall
+    // pushes as its fluid does; forces are a few per cent stronger than the slope of the internal energy, as gradients are exact on the
+    // lattice and its density sum is not.
+    double unseen() {
+        const double M = particleMass(scene) * simulation.fluidCount(), squeezed = simulation.wallCount() > 0 ? 1 : 0.05;
+        return M * length(toDouble(scene.simulation.gravity)) * scene.simulation.spacing / 2 +
+               squeezed * internalEnergy(scene, sound, simulation);
+    }
+    double gain(const Measurement& m) { return (total(m) - start) / scale; }
+    double scaleOf(const Measurement& m) {
+        const double M = particleMass(scene) * simulation.fluidCount();
+        const double reach = length(toDouble(scene.domain.max - scene.domain.min)), pull = scene.simulation.centralRate * reach;
+        return m.kineticEnergy + internalEnergy(scene, sound, simulation) +
+               M * (length(toDouble(scene.simulation.gravity)) * reach + pull * pull / 2 + std::pow(sound / 50, 2) / 2);
+    }
+};
+
+// "" while nothing is wrong.
+std::string wrong(const StressCase& c, const Measurement& m, double gain) {
+    const Scene& s = c.scene;
+    if (!m.finite) return "values that are no numbers";
+    if (c.energyIsConserved && gain > 0.01) return fmt::format("{:.1f} % of energy from nothing", 100 * gain);
+    // A thin splash compressed to twice its density is no fluid any more.
+    if (m.maxDensityError > 1) return fmt::format("density {:.1f} times that at rest", 1 + m.maxDensityError);
+    if (m.meanDensity < 0.02 * s.fluid.restDensity) return "hardly any density left";
+    return "";
+}
+
+std::string outside(const Scene& s, Simulation& simulation) {
+    for (const Particle& p : simulation.particles())
+        for (int k = 0; k < 3; ++k) {
+            const double size = s.domain.max[k] - s.domain.min[k], slack = 1e-5 * (size + std::abs(s.domain.max[k]));
+            if (p.position[k] < s.domain.min[k] - slack || p.position[k] > s.domain.max[k] + slack)
+                return fmt::format("particle {} left the box", p.id);
+        }
+    return "";
+}
+
+}  // namespace
+
+StressResult stress(const StressCase& c) {
+    Scene scene = c.scene;
+    const auto simulation = c.start ? makeSimulation(scene, c.start(scene)) : makeSimulation(scene);
+    Energy energy{c.scene, *simulation};
+    StressResult r;
+    r.particles = simulation->fluidCount();
+    constexpr int Stride = 10;
+    for (int step = 0; step < c.steps; step += Stride) {
+        if (c.disturb) c.disturb(*simulation, scene, step);
+        simulation->step(std::min(Stride, c.steps - step));
+        const Measurement m = simulation->measure();
+        r.steps = m.steps;
+        r.energyGain = std::max(r.energyGain, energy.gain(m));
+        r.density = std::max(r.density, m.maxDensityError);
+        if (const std::string said = divergence(scene, m); !said.empty()) {
+            r.verdict = Verdict::Stopped, r.what = said;
+            return r;
+        }
+        r.what = wrong(c, m, r.energyGain);
+        if (!r.what.empty()) break;
+    }
+    if (r.what.empty()) r.what = outside(scene, *simulation);
+    r.verdict = r.what.empty() ? Verdict::Sound : Verdict::Broken;
+    return r;
+}
+
+double largestSound(const StressCase& c, const std::string& knob, double least, double most) {
+    auto sound = [&](double value) {
+        StressCase tried = c;
+        setKnob(tried.scene, fmt::format("{}={}", knob, value));
+        checkScene(tried.scene, c.name);
+        return stress(tried).verdict == Verdict::Sound;
+    };
+    if (!sound(least)) return least - 1;
+    if (sound(most)) return most;
+    double low = least, high = most;
+    while (high - low > (most - least) / 20) (sound((low + high) / 2) ? low : high) = (low + high) / 2;
+    return low;
+}
+
+namespace {
+
+// A box of 1 m with one body, coarse.
+Scene box(const char* formulation, const std::vector<std::string>& knobs) {
+    Scene s;
+    s.compute.backend = Backend::Cpu;
+    s.domain = {{0, 0, 0}, {1, 1, 1}};
+    s.simulation.spacing = 0.05f;
+    setKnob(s, std::string("simulation.formulation=") + formulation);
+    for (const std::string& knob : knobs) setKnob(s, knob);
+    return s;
+}
+
+const std::string Ball = R"(fluid.bodies=[{"shape":"sphere","center":[0.5,0.5,0.5],"radius":0.25,"velocity":[)";
+std::string ball(double down) { return Ball + fmt::format("0,{},0]}}]", -down); }
+
+// In the middle of the box.
+RunState placed(const Scene& scene, const std::vector<Vec3>& positions) {
+    Placement p = placeParticles(scene);
+    p.positions = positions;
+    p.velocities.assign(positions.size(), {0, 0, 0});
+    p.pressures.clear();
+    return RunState(std::move(p));
+}
+
+void tilt(Simulation& simulation, Scene& scene, int step) {
+    const Vec3 directions[] = {{0, -9.81f, 0}, {9.81f, 0, 0}, {0, 9.81f, 0}, {-7, 0, 7}};
+    scene.simulation.gravity = directions[step / 100 % 4];
+    simulation.apply(scene);
+}
+void stirMadly(Simulation& simulation, Scene& scene, int step) {
+    const float angle = float(step);
+    simulation.stir({scene.domain.min + Vec3{0.5f, 0.2f, 0.5f}, 0.4f, 20.0f * Vec3{std::cos(angle), std::sin(2 * angle), std::sin(angle)}});
+}
+
+// For formulations with free surfaces.
+void addViolent(const char* f, std::vector<StressCase>& out) {
+    auto add = [&](const char* name, int steps, const std::vector<std::string>& knobs) -> StressCase& {
+        out.push_back({fmt::format("{}: {}", f, name), box(f, knobs), steps, {}, {}, true});
+        return out.back();
+    };
+    const std::string pool = R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[1,0.4,1]}])";
+    add("impact at 10 m/s", 600, {ball(10)});
+    add("impact at 100 m/s", 600, {ball(100)});
+    add("thin jet", 600, {R"(fluid.bodies=[{"shape":"cylinder","center":[0.5,0.6,0.5],"radius":0.08,"height":0.7,"velocity":[0,-5,0]}])"});
+    add("sheet one particle thick", 400, {R"(fluid.bodies=[{"shape":"block","min":[0.1,0.5,0.1],"max":[0.9,0.55,0.9]}])"});
+    add("one particle", 400, {R"(fluid.bodies=[{"shape":"block","min":[0.5,0.5,0.5],"max":[0.55,0.55,0.55]}])"});
+    add("two particles at one point", 400, {}).start = [](const Scene& s) { return placed(s, {{0.5f, 0.5f, 0.5f}, {0.5f, 0.5f, 0.5f}}); };
+    StressCase& onWalls = add("particles on the walls", 400, {});
+    onWalls.start = [](const Scene& s) {
+        return placed(s, {{0, 0, 0}, {1, 1, 1}, {0, 0.5f, 0.5f}, {0.5f, 0, 0.5f}, {0.5f, 0.5f, 1}, {1, 0, 0.2f}});
+    };
+    onWalls.energyIsConserved = false;   // they start where walls push most, in corners from three sides
+    add("overlapping bodies", 400, {R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.6,0.5,0.6]},{"shape":"sphere","center":[0.5,0.5,0.5],"radius":0.3}])"});
+    add("reflecting walls", 600, {ball(5), "walls.kind=reflect"});
+    StressCase& tilted = add("gravity tilted and turned", 1600, {pool});
+    tilted.disturb = tilt, tilted.energyIsConserved = false;
+    add("viscosity 1000 times water's, and more", 400, {pool, "fluid.viscosity=100"});
+    StressCase& stirred = add("stirred like mad", 1000, {pool});
+    stirred.disturb = stirMadly, stirred.energyIsConserved = false;
+    add("10 km from the origin", 600, {"domain.min=9000,9000,9000", "domain.max=9001,9001,9001",
+                                       R"(fluid.bodies=[{"shape":"block","min":[9000,9000,9000],"max":[9000.5,9000.5,9001]}])"});
+    add("two dimensions", 1000, {"simulation.dimensions=2", "simulation.spacing=0.02",
+                                 R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.4,0.8,1]}])"});
+}
+
+}  // namespace
+
+std::vector<StressCase> tortures(bool full) {
+    std::vector<StressCase> out;
+    for (const char* f : {"wcsph", "delta_sph"}) addViolent(f, out);
+    const std::vector<std::string> tv{"simulation.dimensions=2", "simulation.spacing=0.03", "simulation.gravity=0,0,0", "fluid.rest_density=1",
+                                      "fluid.equation_of_state=linear", "domain.max=0.99,0.99,1",
+                                      R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.99,0.99,1]}])"};
+    auto addFilled = [&](const char* name, std::vector<std::string> knobs) -> StressCase& {
+        std::vector<std::string> all = tv;
+        all.insert(all.end(), knobs.begin(), knobs.end());
+        out.push_back({std::string("transport_velocity: ") + name, box("transport_velocity", all), 2000, {}, {}, true});
+        return out.back();
+    };
+    addFilled("vortices between walls, Re 1000", {R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.99,0.99,1],"velocity":[1,0,0],"field":"taylor_green"}])"});
+    addFilled("cavity, Re 1e5", {"walls.moving_face=y_max", "walls.velocity=1,0,0", "fluid.viscosity=1e-5"}).energyIsConserved = false;
+    addFilled("cavity, lid at 100 m/s", {"walls.moving_face=y_max", "walls.velocity=100,0,0", "fluid.viscosity=0.1"}).energyIsConserved = false;
+    addFilled("start with half a spacing of disorder", {"simulation.jitter=0.5"});
+    out.push_back({"classic: viscosity 0.5, which gains energy at impact",
+                   box("classic", {R"(fluid.bodies=[{"shape":"block","min":[0.1,0.3,0.1],"max":[0.6,0.9,0.6]}])", "fluid.viscosity=0.5",
+                                   "simulation.kernel=cubic_spline", "simulation.support=2", "time.mode=fixed", "time.step=0.001"}),
+                   1000, {}, {}, true});
+    if (full) {
+        out.push_back({"a million steps of a still pool", box("wcsph", {R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.4,0.4,0.4]}])", "domain.max=0.4,0.6,0.4"}), 1'000'000, {}, {}, true});
+        out.push_back({"three million particles", box("wcsph", {"simulation.spacing=0.0055", R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.5,1,1]}])"}), 50, {}, {}, true});
+    }
+    return out;
+}
+
+StressCase randomCase(uint64_t seed) {
+    std::mt19937_64 random(seed);
+    auto unit = [&] { return double(random() >> 11) / 9007199254740992.0; };
+    auto between = [&](double a, double b) { return float(a + (b - a) * unit()); };
+    auto logarithmic = [&](double a, double b) { return float(a * std::pow(b / a, unit())); };
+    auto oneIn = [&](int n) { return random() % uint64_t(n) == 0; };
+    for (;;) {
+        Scene s;
+        s.name = fmt::format("random {}", seed);
+        s.compute.backend = Backend::Cpu;
+        s.simulation.dimensions = oneIn(3) ? 2 : 3;
+        s.simulation.formulation = oneIn(2) ? Formulation::Wcsph : Formulation::DeltaSph;
+        s.simulation.kernel = oneIn(4) ? Kernel::CubicSpline : Kernel::WendlandC2;
+        const double scale = logarithmic(0.01, 10);   // m
+        const Vec3 size{between(0.6, 1.6), between(0.6, 1.6), between(0.6, 1.6)};
+        s.domain.min = oneIn(4) ? Vec3{between(-100, 100), between(-100, 100), between(-100, 100)} : Vec3{0, 0, 0};
+        s.domain.max = s.domain.min + float(scale) * size;
+        s.simulation.spacing = float(scale) * (s.simulation.dimensions == 2 ? between(0.015, 0.05) : between(0.05, 0.1));
+        s.simulation.support = between(2, 3.2);
+        const float g = oneIn(5) ? 0 : between(1, 30);
+        s.simulation.gravity = {oneIn(3) ? between(-10, 10) : 0, -g, oneIn(3) && s.simulation.dimensions == 3 ? between(-10, 10) : 0};
+        s.simulation.jitter = oneIn(3) ? between(0, 0.2) : 0;
+        s.simulation.seed = int(seed % 1000);
+        s.domain.periodicX = oneIn(4), s.domain.periodicZ = oneIn(6) && s.simulation.dimensions == 3;
+        s.walls.kind = oneIn(3) ? WallKind::Reflect : WallKind::Particles;
+        s.walls.restitution = oneIn(2) ? between(0, 1) : 0, s.walls.friction = oneIn(2) ? between(0, 1) : 0;
+        s.fluid.restDensity = logarithmic(1, 2000);
+        s.fluid.viscosity = oneIn(4) ? 0 : s.fluid.restDensity * logarithmic(1e-6, 1e-1);
+        s.fluid.artificialViscosity = between(0.02, 0.3);
+        s.fluid.equationOfState = oneIn(4) ? EquationOfState::Linear : EquationOfState::Tait;
+        s.fluid.speedRatio = between(8, 20);
+        s.compute.skin = oneIn(4) ? 0 : between(0.02, 0.4);
+        s.fluid.bodies.clear();
+        for (uint64_t b = 0, n = 1 + random() % 3; b < n; ++b) {
+            Body body;
+            body.shape = Shape(random() % 3);
+            const Vec3 low{between(0, 0.6) * size.x, between(0, 0.6) * size.y, between(0, 0.6) * size.z};
+            const Vec3 extent{between(0.1, 0.4) * size.x, between(0.1, 0.4) * size.y, between(0.1, 0.4) * size.z};
+            body.min = s.domain.min + float(scale) * low, body.max = body.min + float(scale) * extent;
+            body.center = 0.5f * (body.min + body.max);
+            body.radius = 0.4f * float(scale) * std::min({extent.x, extent.y, extent.z});
+            body.height = float(scale) * extent.y;
+            const float speed = std::sqrt(float(scale)) * logarithmic(0.1, 20);
+            body.velocity = {between(-1, 1) * speed, between(-1, 1) * speed, s.simulation.dimensions == 3 ? between(-1, 1) * speed : 0};
+            s.fluid.bodies.push_back(body);
+        }
+        try {
+            checkScene(s, s.name);
+        } catch (const Error&) { continue; }   // makes no sense: the next throw of the dice
+        const int64_t count = countParticles(s).fluid;
+        if (count < 20 || count > 8000) continue;
+        // Who falls along a periodic axis falls for ever.
+        const bool falls = (s.domain.periodicX && s.simulation.gravity.x != 0) || (s.domain.periodicZ && s.simulation.gravity.z != 0);
+        return {s.name, s, 300, {}, {}, !falls};
+    }
+}
+
+}  // namespace spindrift

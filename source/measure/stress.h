@@ -1,0 +1,48 @@
+#pragma once
+// Runs that are meant to break the physics, and what counts as broken.
+#include "scene/scene.h"
+#include "sim/simulation.h"
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace spindrift {
+
+struct StressCase {
+    std::string name;
+    Scene scene;
+    int steps = 300;
+    std::function<RunState(const Scene&)> start;                      // empty: as the scene says
+    std::function<void(Simulation&, Scene&, int step)> disturb;       // called before each tenth step; empty: nobody does
+    bool energyIsConserved = true;                                    // nobody stirs, tilts or slides
+};
+
+// Sound: finite, inside the box, no energy from nothing, density within bounds. Stopped: not sound any more, and the health guard said
+// so before anything else. Broken: wrong, and nobody said so.
+enum class Verdict { Sound, Stopped, Broken };
+struct StressResult {
+    Verdict verdict = Verdict::Sound;
+    std::string what;             // what was wrong, "" when sound
+    int particles = 0;
+    int64_t steps = 0;
+    double energyGain = 0;        // largest gain of kinetic, potential and internal energy / (what of it can move at the start: kinetic,
+                                  // internal, M g H, and M (c / 50)^2 / 2)
+    double density = 0;           // largest rho / rho0 - 1
+};
+
+StressResult stress(const StressCase&);
+
+// Impacts, jets, sheets, single and coinciding particles, tilted gravity and so on, for each formulation that can do them. `full` adds
+// those that take minutes: a million steps of a still pool, three million particles.
+std::vector<StressCase> tortures(bool full);
+
+// Some valid small scene: the same for the same seed.
+StressCase randomCase(uint64_t seed);
+
+// The largest value of a knob, up to `most`, with which a scene is sound for `steps` steps, by bisection between that and `least`, to
+// a twentieth of the interval; `least` - 1 when not even that is.
+double largestSound(const StressCase&, const std::string& knob, double least, double most);
+
+}  // namespace spindrift
