@@ -61,6 +61,19 @@ void print(const ValidationCase& c, const ValidationRun& run, double order) {
     std::fflush(stdout);
 }
 
+// One line a run: its metrics, targets beside them.
+std::string tableRow(const ValidationCase& c, const ValidationRun& run, double order) {
+    std::string metrics;
+    for (const Metric& m : run.metrics) {
+        const bool missed = m.target && !(std::abs(m.value) <= *m.target);
+        metrics += fmt::format("{}{}{} {:.3g}{}{}{}", metrics.empty() ? "" : "; ", missed ? "**" : "", m.name, m.value,
+                               m.unit.empty() ? "" : " " + m.unit, m.target ? fmt::format(" (target {:g})", *m.target) : "",
+                               missed ? " missed**" : "");
+    }
+    return fmt::format("| {} | {} = {} | {} | {} | {:.1f} |\n", c.title, c.length, run.resolution, metrics,
+                       std::isfinite(order) ? fmt::format("{:.1f}", order) : "", run.cost.seconds);
+}
+
 nlohmann::json describe(const ValidationCase& c, const ValidationRun& run, double order) {
     nlohmann::json metrics = nlohmann::json::array();
     for (const Metric& m : run.metrics) {
@@ -89,6 +102,7 @@ int validate(const ValidateOptions& options) {
     for (const ValidationCase& c : cases)
         for (int resolution : resolutionsOf(c)) sceneFor(c, resolution, options);
     nlohmann::json rows = nlohmann::json::array();
+    std::string markdown = "| case | resolution | errors | order | s |\n|---|---|---|---|---|\n";
     int judged = 0, passed = 0;
     for (const ValidationCase& c : cases) {
         const std::vector<int> resolutions = resolutionsOf(c);
@@ -100,11 +114,13 @@ int validate(const ValidateOptions& options) {
             const double p = order(before ? &*before : nullptr, run);
             print(c, run, p);
             rows.push_back(describe(c, run, p));
+            markdown += tableRow(c, run, p);
             for (const Metric& m : run.metrics)
                 if (m.target) ++judged, passed += std::abs(m.value) <= *m.target;
             if (!options.out.empty()) {
                 writeText(fmt::format("{}/{}_{}.svg", options.out, c.name, resolution), svg(run.chart));
                 writeText(options.out + "/validation.json", rows.dump(2) + "\n");
+                writeText(options.out + "/validation.md", markdown);
             }
             before = std::move(run);
         }

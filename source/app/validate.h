@@ -12,7 +12,7 @@ struct ValidateOptions {
     std::vector<std::string> cases;      // names; empty = all
     std::vector<int> resolutions;        // empty = the case's own
     std::vector<KnobChoice> choices;     // knobs that differ from the case's scene
-    std::string out;                     // folder of JSON and charts, "" = none
+    std::string out;                     // folder of validation.json, validation.md and charts, "" = none
     bool quick = false, list = false;
 };
 
