@@ -135,8 +135,7 @@ nlohmann::json describe(const ValidationCase& c, const Point& p) {
 
 int benchError(const ErrorBenchOptions& options) {
     const std::vector<std::string> names =
-        options.cases.empty() ? std::vector<std::string>{"taylor_green", "poiseuille_re100", "cavity_re100", "drop", "hydrostatic",
-                                                         "dam_break_pressure"}
+        options.cases.empty() ? std::vector<std::string>{"taylor_green", "poiseuille_re100", "cavity_re100", "drop", "hydrostatic"}
                               : options.cases;
     if (!options.out.empty()) requireFolder(options.out);
     nlohmann::json rows = nlohmann::json::array();
