@@ -34,6 +34,23 @@ struct Scale {
     double pixel(double v) const { return from + (map(v) - low) / (high - low) * (to - from); }
 };
 
+// About six of 1, 2 or 5 times a power of ten.
+std::vector<double> roundNumbers(double low, double high) {
+    const double rough = (high - low) / 6, power = std::pow(10, std::floor(std::log10(rough)));
+    const double step = rough <= power ? power : rough <= 2 * power ? 2 * power : rough <= 5 * power ? 5 * power : 10 * power;
+    std::vector<double> ticks;
+    for (double v = std::ceil(low / step) * step; v <= high + 1e-9 * step; v += step) ticks.push_back(std::abs(v) < 1e-9 * step ? 0 : v);
+    return ticks;
+}
+// Logarithms of powers of ten, in short ranges of 2 and 5 times them too.
+std::vector<double> decades(double low, double high) {
+    std::vector<double> ticks;
+    for (double power = std::floor(low); power <= high; ++power)
+        for (double m : {1.0, 2.0, 5.0})
+            if (const double v = power + std::log10(m); v >= low && v <= high && (m == 1 || high - low < 3)) ticks.push_back(v);
+    return ticks;
+}
+
 Scale scaleOf(const Chart& chart, bool vertical) {
     Scale s;
     s.log = vertical ? chart.logY : chart.logX;
@@ -44,15 +61,8 @@ Scale scaleOf(const Chart& chart, bool vertical) {
             if (s.shows(v)) low = std::min(low, s.map(v)), high = std::max(high, s.map(v));
     if (low > high) low = 0, high = 1;
     if (high - low < 1e-12 * std::max(1.0, std::abs(high))) low -= 0.5, high += 0.5;
-    const double step = [&] {
-        const double rough = (high - low) / 6, power = std::pow(10, std::floor(std::log10(rough)));
-        for (double m : {1.0, 2.0, 5.0})
-            if (m * power >= rough) return m * power;
-        return 10 * power;
-    }();
     s.low = vertical ? low - 0.04 * (high - low) : low, s.high = vertical ? high + 0.04 * (high - low) : high;
-    for (double v = std::ceil(s.low / step) * step; v <= s.high + 1e-9 * step; v += step)
-        s.ticks.push_back(std::abs(v) < 1e-9 * step ? 0 : v);
+    s.ticks = s.log ? decades(s.low, s.high) : roundNumbers(s.low, s.high);
     return s;
 }
 
@@ -86,6 +96,28 @@ std::string drawn(const Curve& c, const Scale& x, const Scale& y, const char* co
                        c.style == Curve::Dashed ? " stroke-dasharray='7 5'" : "");
 }
 
+// Names of curves that have one, on white, in the upper right corner.
+std::string legend(const Chart& chart) {
+    size_t longest = 0;
+    for (const Curve& c : chart.curves) longest = std::max(longest, c.name.size());
+    const double left = std::max(Left + 30, Width - Right - 7.2 * double(longest));   // where names begin
+    double row = Top + 18;
+    std::string keys;
+    for (size_t k = 0; k < chart.curves.size(); ++k) {
+        const Curve& c = chart.curves[k];
+        const char* color = Colors[k % std::size(Colors)];
+        if (c.name.empty()) continue;
+        keys += c.style == Curve::Points
+                    ? fmt::format("<circle cx='{}' cy='{}' r='3' fill='{}'/>", left - 20, row - 4, color)
+                    : fmt::format("<path d='M{} {}h24' stroke='{}' stroke-width='2'{}/>", left - 32, row - 4, color,
+                                  c.style == Curve::Dashed ? " stroke-dasharray='7 5'" : "");
+        keys += fmt::format("<text x='{}' y='{}'>{}</text>\n", left, row, escaped(c.name));
+        row += 18;
+    }
+    return fmt::format("<rect x='{}' y='{}' width='{}' height='{}' fill='white' opacity='0.8'/>\n", left - 36, Top + 2,
+                       Width - Right - left + 36, row - Top - 14) + keys;
+}
+
 }  // namespace
 
 std::string svg(const Chart& chart) {
@@ -95,19 +127,8 @@ std::string svg(const Chart& chart) {
                                   "<rect width='100%' height='100%' fill='white'/>\n<text x='{2}' y='24' font-size='16'>{3}</text>\n",
                                   Width, Height, Left, escaped(chart.title));
     out += axis(x, false, chart.xLabel) + axis(y, true, chart.yLabel);
-    double row = Top + 18;
-    for (size_t k = 0; k < chart.curves.size(); ++k) {
-        const char* color = Colors[k % std::size(Colors)];
-        const Curve& c = chart.curves[k];
-        out += drawn(c, x, y, color);
-        out += c.style == Curve::Points
-                   ? fmt::format("<circle cx='{}' cy='{}' r='3' fill='{}'/>", Width - 212, row - 4, color)
-                   : fmt::format("<path d='M{} {}h24' stroke='{}' stroke-width='2'{}/>", Width - 224, row - 4, color,
-                                 c.style == Curve::Dashed ? " stroke-dasharray='7 5'" : "");
-        out += fmt::format("<text x='{}' y='{}'>{}</text>\n", Width - 192, row, escaped(c.name));
-        row += 18;
-    }
-    return out + "</svg>\n";
+    for (size_t k = 0; k < chart.curves.size(); ++k) out += drawn(chart.curves[k], x, y, Colors[k % std::size(Colors)]);
+    return out + legend(chart) + "</svg>\n";
 }
 
 }  // namespace spindrift
