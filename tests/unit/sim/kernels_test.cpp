@@ -40,5 +40,48 @@ TYPED_TEST(Kernels, GradientIsTheDerivative) {
     EXPECT_TRUE(std::isfinite(TypeParam::g(0.0)));
 }
 
+// What sums over a lattice miss 1 by, in two and three dimensions: sum V W - 1 and -sum V x dW/dx - 1. Numbers of an independent
+// computation with the standard kernels (case C1 of the validation), h = R / 2.
+struct LatticeRow { int dimensions; bool wendland; double ratio, sum, gradient; };
+constexpr LatticeRow Lattice[] = {
+    {2, false, 1.20, -2.427e-04, -9.207e-03},
+    {2, false, 1.30, -5.323e-05, 1.054e-02},
+    {2, false, 1.50, 3.440e-03, 6.725e-03},
+    {2, false, 2.00, -4.239e-05, -8.998e-04},
+    {2, true , 1.20, 1.795e-02, -3.615e-02},
+    {2, true , 1.30, 1.047e-02, -2.608e-02},
+    {2, true , 1.50, 5.142e-03, -2.601e-03},
+    {2, true , 2.00, 1.206e-03, -8.007e-04},
+    {3, false, 1.20, 8.095e-04, -1.831e-02},
+    {3, false, 1.30, -2.738e-03, -6.516e-03},
+    {3, false, 1.50, 1.795e-03, 1.012e-02},
+    {3, false, 2.00, 7.918e-05, -4.935e-05},
+    {3, true , 1.20, 1.746e-02, -1.477e-02},
+    {3, true , 1.30, 9.501e-03, -2.110e-02},
+    {3, true , 1.50, 3.141e-03, 6.193e-04},
+    {3, true , 2.00, 5.486e-04, -5.873e-04},
+};
+
+template <class K> void expectLattice(const LatticeRow& row) {
+    const double R = 2 * row.ratio;   // dx = 1
+    const int n = int(R) + 1, across = row.dimensions == 3 ? n : 0;
+    double sum = 0, gradient = 0;
+    for (int z = -across; z <= across; ++z)
+        for (int y = -n; y <= n; ++y)
+            for (int x = -n; x <= n; ++x) {
+                const double q = std::sqrt(double(x * x + y * y + z * z)) / R;
+                sum += K::norm(row.dimensions) / std::pow(R, row.dimensions) * K::w(q);
+                gradient -= K::norm(row.dimensions) / std::pow(R, row.dimensions + 2) * K::gradient * K::g(q) * x * x;
+            }
+    // The table has four digits.
+    EXPECT_NEAR(sum - 1, row.sum, 6e-4 * std::abs(row.sum)) << row.dimensions << " " << row.ratio;
+    EXPECT_NEAR(gradient - 1, row.gradient, 6e-4 * std::abs(row.gradient)) << row.dimensions << " " << row.ratio;
+}
+
+TEST(KernelsOnALattice, MissOneByWhatTheTableSays) {
+    for (const LatticeRow& row : Lattice)
+        row.wendland ? expectLattice<kernelsTest::WendlandC2Kernel>(row) : expectLattice<kernelsTest::CubicSplineKernel>(row);
+}
+
 }  // namespace
 }  // namespace spindrift
