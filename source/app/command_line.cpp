@@ -236,7 +236,7 @@ CLI::App* addBench(CLI::App& app, BenchOptions& options, bool& error, ErrorBench
 }
 
 CLI::App* addStress(CLI::App& app, StressOptions& options) {
-    CLI::App* command = app.add_subcommand("stress", "runs that are meant to break the physics; two minutes");
+    CLI::App* command = app.add_subcommand("stress", "runs that are meant to break the physics; half a minute");
     command->add_option("--only", options.only, "tortures whose name contains this, no random scenes")->type_name("TEXT");
     command->add_option("--random", options.random, "number of random scenes")->type_name("N")->check(CLI::Range(0, 1000000));
     command->add_option("--seed", options.seed, "of the first random scene")->type_name("N");
@@ -250,7 +250,7 @@ CLI::App* addValidate(CLI::App& app, ValidateOptions& options) {
         app.add_subcommand("validate", "runs flows with known answers and says how wrong they are, and what that cost");
     command->add_option("cases", options.cases, "names of cases; all without them");
     command->add_flag("--list", options.list, "names the cases and ends");
-    command->add_flag("--quick", options.quick, "coarse runs of some cases, two minutes");
+    command->add_flag("--quick", options.quick, "coarse runs of some cases, half a minute");
     command->add_option("--resolution", options.resolutions, "instead of the case's own; may be repeated")->type_name("N")
         ->check(CLI::Range(4, 100000))->allow_extra_args(false);
     command->add_option("--out", options.out, "folder for validation.json and a chart of each run")->type_name("FOLDER");

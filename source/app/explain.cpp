@@ -48,7 +48,7 @@ int explain(const Scene& scene) {
     fmt::print("particles    {} fluid, {} boundary\n", simulation->fluidCount(), simulation->wallCount());
     fmt::print("formulation  {}, {}, R = {:g} dx = {:.3g} m, about {:.0f} neighbours\n",
                describe(scene.simulation.formulation), describe(scene.simulation.kernel), support,
-               supportRadius(scene), 4.18879 * support * support * support);
+               supportRadius(scene), scene.simulation.dimensions == 2 ? 3.14159 * support * support : 4.18879 * support * support * support);
     fmt::print("memory       {:.1f} MiB, {:.0f} bytes a particle\n\n", double(simulation->bytes()) / mebibyte,
                double(simulation->bytes()) / double(particles));
 

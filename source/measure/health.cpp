@@ -1,5 +1,7 @@
 #include "measure/health.h"
 
+#include "scene/particles.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,18 +10,15 @@
 namespace spindrift {
 namespace {
 
-// Upper estimate of the speed of sound, m/s: as the simulation chooses it, but for a fall through
-// the whole domain and at least under the earth's gravity, so that stirring calm fluid is no alarm.
-double soundSpeed(const Scene& scene) {
-    const Fluid& fluid = scene.fluid;
-    if (fluid.stiffness > 0) return std::sqrt(fluid.stiffness * fluid.gamma / fluid.restDensity);
-    if (fluid.soundSpeed > 0) return fluid.soundSpeed;
-    const double gravity = std::max(9.81, double(length(scene.simulation.gravity)));
-    double initial = 0;
-    for (const Body& body : fluid.bodies)
-        initial = std::max(initial, double(length(body.velocity)));
-    const double fall = double(length(scene.domain.max - scene.domain.min));
-    return fluid.speedRatio * std::sqrt(initial * initial + 2 * gravity * fall);
+// Upper estimate of the speed of sound, m/s: as the simulation chooses it, for a fall through the whole domain, and where nobody named
+// one at least under the earth's gravity, so that stirring calm fluid is no alarm.
+double mostSoundSpeed(const Scene& scene) {
+    const Vec3d size = toDouble(scene.domain.max - scene.domain.min);
+    FluidExtent anywhere{{0, 0, 0}, size, 0};
+    for (const Body& body : scene.fluid.bodies) anywhere.speed = std::max(anywhere.speed, double(length(body.velocity)));
+    const double chosen = soundSpeed(scene, anywhere);
+    if (scene.fluid.stiffness > 0 || scene.fluid.soundSpeed > 0) return chosen;
+    return std::max(chosen, scene.fluid.speedRatio * std::sqrt(2 * 9.81 * length(size)));
 }
 
 }  // namespace
@@ -40,7 +39,7 @@ std::string divergence(const Scene& scene, const Measurement& m) {
             fmt::format("a particle moves {:.3g} m in one step, farther than its support radius",
                         m.maxSpeed * m.dt));
     constexpr double MachLimit = 3;
-    if (m.maxSpeed > MachLimit * soundSpeed(scene))
+    if (m.maxSpeed > MachLimit * mostSoundSpeed(scene))
         return report(fmt::format("a particle at {:.3g} m/s, {:g} times the speed of sound or more",
                                   m.maxSpeed, MachLimit));
     return "";

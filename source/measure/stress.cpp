@@ -33,7 +33,7 @@ double internalEnergy(const Scene& scene, double sound, Simulation& simulation) 
 struct Energy {
     const Scene& scene;
     Simulation& simulation;
-    double sound = soundSpeed(scene, extentOf(simulation.state().particles));
+    double sound = soundSpeed(scene, simulation.state().start);
     double start = total(simulation.measure()) + unseen();
     double scale = scaleOf(simulation.measure());
 

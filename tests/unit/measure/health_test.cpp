@@ -42,6 +42,19 @@ TEST(Health, SaysWhatHasDivergedAndWhen) {
     EXPECT_NE(divergence(scene, m).find("times the speed of sound"), std::string::npos);
 }
 
+// The simulation takes a sliding lid and a central pull into its speed of sound; so must the alarm.
+TEST(Health, FastLidIsNoAlarm) {
+    Measurement m = sound();
+    m.maxSpeed = 400, m.dt = 1e-6;
+    Scene scene;
+    EXPECT_NE(divergence(scene, m), "");
+    scene.walls.velocity = {400, 0, 0};
+    EXPECT_EQ(divergence(scene, m), "");
+    scene.walls.velocity = {0, 0, 0};
+    scene.simulation.centralRate = 300;
+    EXPECT_EQ(divergence(scene, m), "");
+}
+
 TEST(Health, RemedyFitsTheStepping) {
     Measurement m = sound();
     m.finite = false;
