@@ -2,7 +2,7 @@
 
 #include "measure/exact.h"
 #include "measure/interpolate.h"
-#include "measure/reference.h"
+#include "core/table.h"
 #include "scene/particles.h"
 #include "scene/schema.h"
 #include "sim/simulation.h"
@@ -175,7 +175,7 @@ void runCouette(const Scene& scene, ValidationRun& run) {
 
 void runCavity(const Scene& scene, ValidationRun& run, const std::string& data, const std::string& column, double end,
                double target, int from) {
-    const auto u = readTable(data + "/cavity_u_centreline_computed.csv"), v = readTable(data + "/cavity_v_centreline_computed.csv");
+    const Table u = readTable(data + "/cavity_u_centreline_computed.csv"), v = readTable(data + "/cavity_v_centreline_computed.csv");
     const std::vector<double>& at = u.at("y");
     const double z = 0.5 * scene.domain.max.z;
     std::vector<Vec3d> points;
@@ -286,7 +286,7 @@ void runHydrostatic(const Scene& scene, ValidationRun& run) {
 // --- C13 dam break: front ---
 
 void runFront(const Scene& scene, ValidationRun& run, const std::string& data) {
-    const auto experiment = readTable(data + "/martin_moyce1952_front_n2eq2_a2.25in.csv");
+    const Table experiment = readTable(data + "/martin_moyce1952_front_n2eq2_a2.25in.csv");
     const double a = 1, g = -scene.simulation.gravity.y, scale = std::sqrt(2 * g / a);
     Stepping sim(scene, run);
     Curve ours{"front", {}, {}, Curve::Line};
@@ -338,7 +338,7 @@ double integral(const std::vector<double>& t, const std::vector<double>& p, doub
 }
 
 void runImpact(const Scene& scene, ValidationRun& run, const std::string& data) {
-    const auto experiment = readTable(data + "/lobovsky2014_H300_pressure.csv"), peaks = readTable(data + "/lobovsky2014_H300_peak_pressures.csv");
+    const Table experiment = readTable(data + "/lobovsky2014_H300_pressure.csv"), peaks = readTable(data + "/lobovsky2014_H300_peak_pressures.csv");
     const double H = 0.3, g = -scene.simulation.gravity.y, rho0 = scene.fluid.restDensity, Latest = 4;
     constexpr double Heights[] = {0.003, 0.015, 0.030}, Diameter = 0.0042;   // m, of the sensors
     constexpr const char* Columns[] = {"S1_3mm", "S2_15mm", "S3_30mm"};

@@ -1,7 +1,9 @@
 #include "scene/check.h"
 
 #include "core/error.h"
+#include "scene/convex.h"
 #include "scene/json.h"
+#include "scene/motion.h"
 #include "scene/particles.h"
 #include "scene/schema.h"
 
@@ -35,17 +37,6 @@ constexpr double SmallestSupport = 1.5;
 }
 
 std::string bodyPath(size_t index) { return fmt::format("fluid.bodies[{}]", index); }
-
-// The body's bounding box, relative to nothing.
-void bounds(const Body& body, Vec3& low, Vec3& high) {
-    low = body.min;
-    high = body.max;
-    if (body.shape == Shape::Block) return;
-    Vec3 half{body.radius, body.radius, body.radius};
-    if (body.shape == Shape::Cylinder) half[int(body.axis)] = body.height / 2;
-    low = body.center - half;
-    high = body.center + half;
-}
 
 void checkDomain(const Scene& scene) {
     const Vec3 size = scene.domain.max - scene.domain.min;
@@ -114,8 +105,9 @@ void checkMovingFace(const Scene& scene) {
 
 void checkBody(const Scene& scene, size_t index) {
     const Body& body = scene.fluid.bodies[index];
-    Vec3 low, high;
-    bounds(body, low, high);
+    const bool cornered = body.shape == Shape::Block || body.shape == Shape::Wedge;
+    const Vec3 half = toFloat(halfExtent(body));
+    const Vec3 low = cornered ? body.min : body.center - half, high = cornered ? body.max : body.center + half;
     for (int k = 0; k < 3; ++k) {
         const char axis = "xyz"[k];
         if (k >= scene.simulation.dimensions) continue;
@@ -143,6 +135,45 @@ void checkBody(const Scene& scene, size_t index) {
                             "simulation.spacing ({} m)",
                             extent, axis, scene.simulation.spacing));
     }
+}
+
+void checkKeyframes(const Solid& solid, const std::string& path) {
+    for (size_t k = 0; k < solid.keyframes.size(); ++k) {
+        const Keyframe& key = solid.keyframes[k];
+        if (!std::isfinite(key.time + key.turn + key.offset.x + key.offset.y + key.offset.z))
+            refuse(path + ".keyframes", fmt::format("the one at t = {} s has a value that is no number; mend it", key.time));
+        if (k > 0 && key.time <= solid.keyframes[k - 1].time)
+            refuse(path + ".keyframes", fmt::format("t = {} s does not come after {} s; put them in the order of time", key.time,
+                                                    solid.keyframes[k - 1].time));
+    }
+    if (!solid.keyframes.empty() && (solid.velocity != Vec3{} || solid.spin != 0))
+        refuse(path + ".velocity", "keyframes say already how it moves; leave velocity and spin out");
+    if (largestSpeed(solid) > 1e4)
+        refuse(path, fmt::format("moves at {:.3g} m/s, faster than 1e4; check the times and the distances", largestSpeed(solid)));
+}
+
+void checkSolid(const Scene& scene, size_t index) {
+    const Solid& solid = scene.solids[index];
+    const std::string path = fmt::format("solids[{}]", index);
+    if (scene.simulation.formulation == Formulation::Classic)
+        refuse(path, "the classic formulation has no solids; use wcsph");
+    const Vec3d half = halfExtent(solid), middle = convexOf(solid, 3).middle;
+    bool outside = false;
+    for (int k = 0; k < scene.simulation.dimensions; ++k) {
+        const double extent = 2 * half[k];
+        if (extent < scene.simulation.spacing)
+            refuse(path, fmt::format("{:.4g} m along {} is less than simulation.spacing, {} m, which fluid could pass; thicken it",
+                                     extent, "xyz"[k], scene.simulation.spacing));
+        if (scene.domain.periodic(k) && extent > scene.domain.max[k] - scene.domain.min[k] - 2 * supportRadius(scene))
+            refuse(path, fmt::format("leaves no room for fluid along {}, a periodic axis; shorten it", "xyz"[k]));
+        outside |= middle[k] + half[k] < scene.domain.min[k] || middle[k] - half[k] > scene.domain.max[k];
+    }
+    if (outside && !solid.moves()) refuse(path, "lies outside the domain and does not move; move it inside");
+    if (scene.simulation.dimensions == 2 && solid.shape == Shape::Cylinder && solid.axis != Axis::Z)
+        refuse(path + ".axis", "in two dimensions a cylinder is a circle about z; use z");
+    if (scene.simulation.dimensions == 2 && (solid.spinAxis != Axis::Z || solid.velocity.z != 0))
+        refuse(path, "moves out of the plane, and there are two dimensions; leave z out, and turn about z");
+    checkKeyframes(solid, path);
 }
 
 // Bytes of memory that a new program can have. A container may be allowed less than the machine
@@ -224,6 +255,7 @@ void checkScene(const Scene& scene, const std::string& place) {
         for (size_t b = 0; b < scene.fluid.bodies.size(); ++b) checkBody(scene, b);
         checkFills(scene);
         checkMovingFace(scene);
+        for (size_t i = 0; i < scene.solids.size(); ++i) checkSolid(scene, i);
         if (scene.view.range == RangeMode::Fixed && scene.view.rangeMin >= scene.view.rangeMax)
             refuse("view.range_max",
                    fmt::format("{} is not above view.range_min {}; make it larger",

@@ -21,9 +21,11 @@ Json typeOf(int, const Knob& k) {
 }
 Json typeOf(bool, const Knob&) { return {{"type", "boolean"}}; }
 Json typeOf(const std::string&, const Knob&) { return {{"type", "string"}}; }
-Json typeOf(Vec3, const Knob& k) {
-    return {{"type", "array"}, {"items", typeOf(0.0f, k)}, {"minItems", 3}, {"maxItems", 3}};
+Json listOf(const Knob& k, int least, int most) {
+    return {{"type", "array"}, {"items", typeOf(0.0f, k)}, {"minItems", least}, {"maxItems", most}};
 }
+Json typeOf(Vec3, const Knob& k) { return listOf(k, 3, 3); }
+Json typeOf(const Keyframes&, const Knob& k) { return {{"type", "array"}, {"items", listOf(k, 4, 5)}}; }
 template <class E>
 requires std::is_enum_v<E> Json typeOf(E value, const Knob&) {
     return {{"enum", enumNames(value)}};
@@ -45,19 +47,20 @@ Json& parentProperties(Json& root, std::string& path) {
     return (*object)["properties"];
 }
 
-// A body's schema allows the keys of all shapes; the reader is stricter.
-Json bodySchema() {
-    Json body = emptyObject();
-    for (Shape shape : {Shape::Block, Shape::Sphere, Shape::Cylinder}) {
-        Body example;
+// The schema of a list's members allows the keys of all shapes; the reader is stricter.
+template <class T>
+Json memberSchema() {
+    Json member = emptyObject();
+    for (Shape shape : {Shape::Block, Shape::Sphere, Shape::Cylinder, Shape::Wedge}) {
+        T example;
         example.shape = shape;
-        visitBody(example, "", [&](std::string path, const auto& value, const Knob& knob) {
-            Json& property = body["properties"][path.substr(1)];
+        visitMember(example, "", [&](std::string path, const auto& value, const Knob& knob) {
+            Json& property = member["properties"][path.substr(1)];
             property = typeOf(value, knob);
             property["description"] = withUnit(knob);
         });
     }
-    return body;
+    return member;
 }
 
 // A value as the table shows it.
@@ -66,6 +69,11 @@ std::string plain(int value) { return fmt::format("{}", value); }
 std::string plain(bool value) { return value ? "true" : "false"; }
 std::string plain(const std::string& value) { return value.empty() ? "\"\"" : value; }
 std::string plain(Vec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
+std::string plain(const Keyframes& keyframes) {
+    std::string text;
+    for (const Keyframe& k : keyframes) text += fmt::format("[{},{},{}]", k.time, plain(k.offset), k.turn);
+    return "[" + text + "]";
+}
 template <class E>
 requires std::is_enum_v<E> std::string plain(E value) { return enumNames(value)[size_t(value)]; }
 
@@ -78,6 +86,8 @@ std::string allowed(const T& value, const Knob& knob) {
         return "true|false";
     else if constexpr (std::is_same_v<T, std::string>)
         return "text";
+    else if constexpr (std::is_same_v<T, Keyframes>)
+        return "list of lists of numbers";
     else
         return allowedRange(knob);
 }
@@ -91,7 +101,7 @@ std::string jsonSchema() {
     root["required"] = {"version"};
     root["properties"]["$schema"] = {{"type", "string"}};
     Scene scene;
-    scene.fluid.bodies.clear();
+    visitLists(scene, [](const char*, auto& list, const char*) { list.clear(); });
     visitKnobs(scene, [&](std::string path, const auto& value, const Knob& knob) {
         Json property = typeOf(value, knob);
         property["description"] = withUnit(knob) + (knob.live ? "" : " (restarts the scene)");
@@ -99,13 +109,16 @@ std::string jsonSchema() {
             property["default"] = plain(value);
         else if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Vec3>)
             property["default"] = {value.x, value.y, value.z};
-        else
+        else if constexpr (!std::is_same_v<std::decay_t<decltype(value)>, Keyframes>)
             property["default"] = value;
         Json& properties = parentProperties(root, path);
         properties[path] = property;
     });
-    root["properties"]["fluid"]["properties"]["bodies"] =
-        Json{{"type", "array"}, {"items", bodySchema()}, {"description", "bodies of fluid"}};
+    visitLists(scene, [&](std::string path, const auto& list, const char* what) {
+        using Member = typename std::decay_t<decltype(list)>::value_type;
+        Json& properties = parentProperties(root, path);
+        properties[path] = Json{{"type", "array"}, {"items", memberSchema<Member>()}, {"description", what}};
+    });
     return root.dump(2) + "\n";
 }
 
@@ -119,9 +132,11 @@ std::vector<std::pair<std::string, std::string>> restartKnobs(const Scene& scene
 
 std::string knobTable() {
     Scene scene;
-    Body block, cylinder;
-    cylinder.shape = Shape::Cylinder;
-    scene.fluid.bodies = {block, cylinder};  // together they have every knob that a body can have
+    // A block and a cylinder together have every knob that a shape can have.
+    visitLists(scene, [](const char*, auto& list, const char*) {
+        list.resize(2);
+        list[1].shape = Shape::Cylinder;
+    });
     std::string table;
     std::vector<std::string> seen;
     visitKnobs(scene, [&](std::string path, const auto& value, const Knob& knob) {

@@ -1,6 +1,7 @@
 #include "scene/json.h"
 
 #include "scene/historical.h"
+#include "scene/motion.h"
 #include "scene/read_knobs.h"
 
 #include <algorithm>
@@ -29,24 +30,26 @@ std::string readText(const std::string& file) {
     return text;
 }
 
-// The list of bodies is as long as the file's, each from the defaults.
-void resizeBodies(const Json& bodies, Scene& scene, const Place& place) {
-    if (!bodies.is_array())
-        place.fail("fluid.bodies",
-                   fmt::format("expected a list of bodies [{{...}}], found {}", shown(bodies)));
-    scene.fluid.bodies.assign(bodies.size(), Body{});
-    for (size_t i = 0; i < bodies.size(); ++i)
-        if (!bodies[i].is_object())
-            place.fail(fmt::format("fluid.bodies[{}]", i),
-                       fmt::format("expected an object {{...}}, found {}", shown(bodies[i])));
+// Each list becomes as long as the file's, each member from the defaults.
+template <class T>
+void resizeList(Json& root, const std::string& path, std::vector<T>& list, const Place& place) {
+    const Json* json = find(root, path);
+    if (!json) return;
+    if (!json->is_array())
+        place.fail(path, fmt::format("expected a list of objects [{{...}}], found {}", shown(*json)));
+    list.assign(json->size(), T{});
+    for (size_t i = 0; i < json->size(); ++i)
+        if (!(*json)[i].is_object())
+            place.fail(fmt::format("{}[{}]", path, i), fmt::format("expected an object {{...}}, found {}", shown((*json)[i])));
+    if (json->empty()) {   // done, and no knob knows it
+        const size_t dot = path.rfind('.');
+        (dot == std::string::npos ? root : root[path.substr(0, dot)]).erase(path.substr(dot + 1));
+    }
 }
 
 void readScene(Json& root, Scene& scene, const Place& place) {
     if (root.is_object()) root.erase("$schema");  // tells an editor where the schema is
-    if (const Json* bodies = find(root, "fluid.bodies")) {
-        resizeBodies(*bodies, scene, place);
-        if (bodies->empty()) root["fluid"].erase("bodies");  // done, and no knob knows it
-    }
+    visitLists(scene, [&](const char* path, auto& list, const char*) { resizeList(root, path, list, place); });
     readKnobs(root, scene, place);
 }
 
@@ -55,6 +58,11 @@ Json toJson(int value) { return value; }
 Json toJson(bool value) { return value; }
 Json toJson(const std::string& value) { return value; }
 Json toJson(Vec3 v) { return Json::array({v.x, v.y, v.z}); }
+Json toJson(const Keyframes& keyframes) {
+    Json list = Json::array();
+    for (const Keyframe& k : keyframes) list.push_back({k.time, k.offset.x, k.offset.y, k.offset.z, k.turn});
+    return list;
+}
 template <class E>
 requires std::is_enum_v<E> Json toJson(E value) { return enumNames(value)[size_t(value)]; }
 
@@ -107,6 +115,7 @@ Scene parseScene(const std::string& text, const std::string& place) {
     if (root.is_object() && !root.contains("version")) return readHistorical(root, place);
     Scene scene;
     readScene(root, scene, Place{place, ""});
+    readMotions(scene, std::filesystem::path(place).parent_path().string(), place);
     return scene;
 }
 
@@ -117,7 +126,9 @@ std::string writeScene(const Scene& scene) {
     visitKnobs(scene, [&](const std::string& path, const auto& value, const Knob&) {
         placeFor(root, path) = toJson(value);
     });
-    if (scene.fluid.bodies.empty()) root["fluid"]["bodies"] = Json::array();
+    visitLists(scene, [&](const char* path, const auto& list, const char*) {
+        if (list.empty()) placeFor(root, path) = Json::array();
+    });
     std::string out;
     write(root, "", out);
     return out + "\n";
@@ -132,14 +143,16 @@ void setKnob(Scene& scene, const std::string& assignment, const std::string& ori
     const Json value = looseValue(text);
 
     Scene changed = scene;
-    if (path == "fluid.bodies") {
+    bool found = false;
+    visitLists(changed, [&](const char* list, auto&, const char*) { found |= path == list; });
+    if (found) {
         Json root;
-        root["fluid"]["bodies"] = value;
+        placeFor(root, path) = value;
         readScene(root, changed, place);
+        readMotions(changed, "", origin);
         scene = changed;
         return;
     }
-    bool found = false;
     std::vector<std::string> known;
     visitKnobs(changed, [&](const std::string& name, auto& knobValue, const Knob& knob) {
         known.push_back(name);
@@ -150,10 +163,11 @@ void setKnob(Scene& scene, const std::string& assignment, const std::string& ori
         assign(knobValue, isText && !value.is_string() ? Json(text) : value, knob, place, path);
     });
     if (found) {
+        readMotions(changed, "", origin);
         scene = changed;
         return;
     }
-    // Within a body that there is, the keys of that body are meant.
+    // Within a member of a list the keys of that member are meant.
     const size_t bracket = path.find("].");
     std::string body = bracket == std::string::npos ? "" : path.substr(0, bracket + 2);
     if (std::none_of(known.begin(), known.end(), [&](auto& k) { return k.starts_with(body); }))

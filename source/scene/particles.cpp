@@ -1,5 +1,9 @@
 #include "scene/particles.h"
 
+#include "scene/convex.h"
+#include "scene/motion.h"
+#include "scene/sample_solid.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -31,15 +35,9 @@ Vec3d domainSize(const Scene& scene) {
 // In two dimensions z has one layer.
 bool flat(const Scene& scene, int axis) { return scene.simulation.dimensions == 2 && axis == 2; }
 
-// Half the body's extent along each axis, m.
-Vec3d halfExtent(const Body& body) {
-    if (body.shape == Shape::Block) return 0.5 * (toDouble(body.max) - toDouble(body.min));
-    Vec3d half{body.radius, body.radius, body.radius};
-    if (body.shape == Shape::Cylinder) half[int(body.axis)] = 0.5 * double(body.height);
-    return half;
-}
+bool isCornered(const Form& form) { return form.shape == Shape::Block || form.shape == Shape::Wedge; }
 
-// The body's cell-centred lattice relative to domain.min: a block's begins half a spacing inside
+// The body's cell-centred lattice relative to domain.min: a cornered one's begins half a spacing inside
 // its lower corner, a round body's is symmetric about its centre.
 Lattice bodyLattice(const Scene& scene, const Body& body) {
     const double dx = scene.simulation.spacing;
@@ -51,7 +49,7 @@ Lattice bodyLattice(const Scene& scene, const Body& body) {
             lattice.first[k] = 0.5 * domainSize(scene)[k];
             continue;
         }
-        lattice.first[k] = body.shape == Shape::Block ? double(body.min[k]) - origin[k] + 0.5 * dx
+        lattice.first[k] = isCornered(body) ? double(body.min[k]) - origin[k] + 0.5 * dx
                                                       : double(body.center[k]) - origin[k] -
                                                             0.5 * dx * double(lattice.n[k] - 1);
     }
@@ -62,13 +60,16 @@ Lattice bodyLattice(const Scene& scene, const Body& body) {
 // side. Flat sides are taken where the lattice ends, half a spacing beyond its last plane.
 bool contains(const Body& body, const Lattice& lattice, Vec3d origin, Vec3d p, double margin) {
     for (int k = 0; k < 3; ++k) {
-        const bool plane =
-            body.shape == Shape::Block || (body.shape == Shape::Cylinder && k == int(body.axis));
+        const bool plane = isCornered(body) || (body.shape == Shape::Cylinder && k == int(body.axis));
         if (!plane) continue;
         const double low = lattice.first[k] - 0.5 * lattice.step[k];
         if (p[k] < low || p[k] > low + double(lattice.n[k]) * lattice.step[k]) return false;
     }
     if (body.shape == Shape::Block) return true;
+    if (body.shape == Shape::Wedge) {
+        const Convex wedge = convexOf(body, 2);
+        return wedge.nearest(p + origin - wedge.middle).distance <= margin + 1e-6 * lattice.step.x;
+    }
     Vec3d d = p - (toDouble(body.center) - origin);
     if (lattice.step.z == 0) d.z = 0;   // two dimensions
     if (body.shape == Shape::Cylinder) d[int(body.axis)] = 0;
@@ -80,7 +81,7 @@ bool contains(const Body& body, const Lattice& lattice, Vec3d origin, Vec3d p, d
 int64_t wallLayers(const Scene& scene, int axis) {
     if (scene.domain.periodic(axis) || flat(scene, axis)) return 0;
     if (scene.simulation.formulation == Formulation::Classic) return 1;
-    return std::max<int64_t>(1, int64_t(std::ceil(scene.simulation.support)) - 1);
+    return boundaryLayers(scene);
 }
 
 // The lattice whose outer layers are boundary particles. Default: it continues the fluid's lattice, the first layer half
@@ -168,10 +169,7 @@ double hydrostatic(const Scene& scene, const Body& body, Vec3d r) {
     return scene.fluid.restDensity * head;
 }
 
-Vec3d centerOf(const Scene& scene, const Body& body) {
-    const Vec3d center = body.shape == Shape::Block ? 0.5 * (toDouble(body.min) + toDouble(body.max)) : toDouble(body.center);
-    return center - toDouble(scene.domain.min);
-}
+Vec3d centerOf(const Scene& scene, const Body& body) { return convexOf(body, 3).middle - toDouble(scene.domain.min); }
 
 // At p, relative to domain.min.
 Start startOf(const Scene& scene, const Body& body, Vec3d p) {
@@ -203,8 +201,32 @@ private:
     double reach_;   // m
 };
 
-// Appends the points of body `b` that are not in an earlier body.
-void placeBody(const Scene& scene, const std::vector<Lattice>& lattices, size_t b, Jitter& jitter, Placement& out) {
+// The solids, for what is nearer to one than fluid may be: half a spacing is where a lattice that ends at its surface has particles, a bit less lets
+// lattices that don't end there fill the space in the mean.
+class SolidSpace {
+public:
+    explicit SolidSpace(const Scene& scene)
+        : dimensions_(scene.simulation.dimensions), least_(0.3 * double(scene.simulation.spacing)), origin_(toDouble(scene.domain.min)) {
+        for (const Solid& solid : scene.solids) solids_.push_back(convexOf(solid, dimensions_));
+    }
+    bool takes(Vec3d p) const {
+        return std::any_of(solids_.begin(), solids_.end(), [&](const Convex& solid) {
+            Vec3d at = p + origin_ - solid.middle;
+            if (dimensions_ == 2) at.z = 0;
+            return solid.nearest(at).distance < least_;
+        });
+    }
+
+private:
+    std::vector<Convex> solids_;
+    int dimensions_;
+    double least_;   // m
+    Vec3d origin_;
+};
+
+// Appends the points of body `b` that are not in an earlier body or a solid.
+void placeBody(const Scene& scene, const std::vector<Lattice>& lattices, size_t b, const SolidSpace& solids, Jitter& jitter,
+               Placement& out) {
     const std::vector<Body>& bodies = scene.fluid.bodies;
     const Vec3d origin = toDouble(scene.domain.min);
     const double halfSpacing = 0.5 * double(scene.simulation.spacing);
@@ -213,7 +235,7 @@ void placeBody(const Scene& scene, const std::vector<Lattice>& lattices, size_t 
         for (int64_t j = 0; j < l.n[1]; ++j)
             for (int64_t i = 0; i < l.n[0]; ++i) {
                 const Vec3d p = l.at(i, j, k);
-                bool free = contains(bodies[b], l, origin, p, 0);
+                bool free = contains(bodies[b], l, origin, p, 0) && !solids.takes(p);
                 for (size_t e = 0; e < b && free; ++e)
                     free = !contains(bodies[e], lattices[e], origin, p, halfSpacing);
                 if (!free) continue;
@@ -247,8 +269,8 @@ int64_t latticePlanes(const Scene& scene, const Body& body, int axis) {
     const double dx = scene.simulation.spacing;
     const double extent = 2 * halfExtent(body)[axis];
     int64_t n = planes(std::round(extent / dx));
-    if (body.shape != Shape::Block) return n;
-    // A block that ends at the wall must not round up into it.
+    if (!isCornered(body)) return n;
+    // A body that ends at the wall must not round up into it.
     const double room = double(scene.domain.max[axis]) - double(body.min[axis]);
     return n > 0 && double(n) * dx > room + 0.25 * dx ? n - 1 : n;
 }
@@ -262,7 +284,13 @@ Placement placeParticles(const Scene& scene) {
     out.velocities.reserve(expected);
     out.pressures.reserve(expected);
     Jitter jitter(scene);
-    for (size_t b = 0; b < lattices.size(); ++b) placeBody(scene, lattices, b, jitter, out);
+    const SolidSpace solids(scene);
+    for (size_t b = 0; b < lattices.size(); ++b) placeBody(scene, lattices, b, solids, jitter, out);
+    for (const Solid& solid : scene.solids) {
+        const std::vector<Vec3> points = sampleSolid(scene, solid);
+        out.walls.insert(out.walls.end(), points.begin(), points.end());
+        out.solidSizes.push_back(int(points.size()));
+    }
     if (scene.walls.kind == WallKind::Particles) placeShell(wallShell(scene), out.walls);
     return out;
 }
@@ -287,9 +315,20 @@ double soundSpeed(const Scene& s, const FluidExtent& fluid) {
     double fall = 0;   // m^2/s^2
     for (int k = 0; k < 3; ++k)
         fall += s.domain.periodic(k) ? std::abs(g[k]) * size[k] : g[k] > 0 ? g[k] * (size[k] - fluid.low[k]) : -g[k] * fluid.high[k];
-    const double start = std::max<double>(fluid.speed, length(s.walls.velocity));
+    double start = std::max<double>(fluid.speed, length(s.walls.velocity));
+    for (const Solid& solid : s.solids) start = std::max(start, largestSpeed(solid));
     const double pull = s.simulation.centralRate * length(0.5 * size);   // to the centre from a corner
     return s.fluid.speedRatio * std::max(std::sqrt(start * start + 2 * fall + pull * pull), 1e-3);
+}
+
+// Whole shells of the bounding box.
+static double mostInSolid(const Scene& scene, const Solid& solid) {
+    double all = 1, inner = 1;
+    for (int k = 0; k < scene.simulation.dimensions; ++k) {
+        const double n = std::ceil(2 * halfExtent(solid)[k] / scene.simulation.spacing) + 1;
+        all *= n, inner *= std::max(0.0, n - 2 * boundaryLayers(scene) - 2);
+    }
+    return all - inner;
 }
 
 ParticleCount countParticles(const Scene& scene) {
@@ -313,6 +352,9 @@ ParticleCount countParticles(const Scene& scene) {
     }
     count.fluid = int64_t(std::min(fluid, 9e18));
     if (scene.walls.kind == WallKind::Particles) count.walls = wallShell(scene).count();
+    double solids = 0;
+    for (const Solid& solid : scene.solids) solids += mostInSolid(scene, solid);
+    count.walls += int64_t(std::min(solids, 4e18));
     return count;
 }
 

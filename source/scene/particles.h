@@ -9,10 +9,11 @@
 namespace spindrift {
 
 // Positions and walls in metres relative to domain.min, velocities in m/s and pressures in Pa (one for each position; no
-// pressures: none anywhere).
+// pressures: none anywhere). The first of `walls` are the solids' particles where solids are at time 0, solidSizes[i] of the i-th.
 struct Placement {
     std::vector<Vec3> positions, velocities, walls;
     std::vector<float> pressures;
+    std::vector<int> solidSizes;
 };
 
 // Where the fluid is at the start, m from the domain's corner, and how fast, m/s.
@@ -32,7 +33,7 @@ struct ParticleCount {
 };
 
 // How many particles placeParticles would make, at most, without making any: exact for blocks that
-// don't overlap and for walls, a few per cent too many for round bodies. Absurd sizes saturate
+// don't overlap and for the domain's walls, a few per cent too many for round bodies, more for solids. Absurd sizes saturate
 // instead of overflowing.
 ParticleCount countParticles(const Scene&);
 

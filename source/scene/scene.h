@@ -17,7 +17,7 @@ enum class Kernel { WendlandC2, CubicSpline };
 enum class EquationOfState { Tait, Linear };
 enum class WallKind { Reflect, Particles };
 enum class TimeMode { Fixed, Cfl };
-enum class Shape { Block, Sphere, Cylinder };
+enum class Shape { Block, Sphere, Cylinder, Wedge };
 enum class Axis { X, Y, Z };
 enum class ColorBy { Plain, Velocity, Pressure, Density, Acceleration, Id };
 enum class Field { Uniform, TaylorGreen, Stretching, Rotation, Shear };
@@ -25,18 +25,38 @@ enum class StartPressure { None, Hydrostatic };
 enum class Face { None, XMin, XMax, YMin, YMax, ZMin, ZMax };
 enum class RangeMode { Frame, Run, Fixed };
 
-// One body of fluid, filled on a lattice. A block reads min and max, a sphere center and radius,
-// a cylinder center, radius, height and axis.
-struct Body {
+// A block reads min and max, a wedge too: its ridge runs along z, above the middle of its base. A sphere reads center and
+// radius, a cylinder center, radius, height and axis.
+struct Form {
     Shape shape = Shape::Block;
     Vec3 min{0, 0, 0}, max{0.5f, 0.5f, 0.5f};   // m
     Vec3 center{0.5f, 0.5f, 0.5f};              // m
     float radius = 0.1f;                        // m
     float height = 0.2f;                        // m
     Axis axis = Axis::Y;
+};
+
+// One body of fluid, filled on a lattice.
+struct Body : Form {
     Vec3 velocity{0, 0, 0};                     // m/s; for a field its amplitude is the length
     Field field = Field::Uniform;               // of velocity at the start
     StartPressure pressure = StartPressure::None;   // where a field has its own, that is added
+};
+
+// Where a solid is at one time, relative to its place in the scene.
+struct Keyframe { float time = 0; Vec3 offset; float turn = 0; bool operator==(const Keyframe&) const = default; };   // s, m, degrees
+using Keyframes = std::vector<Keyframe>;
+
+// An obstacle: fluid flows around it. It stands still, goes on and on with `velocity` and `spin`, or moves as its
+// keyframes say, on straight lines between them.
+struct Solid : Form {
+    std::string name;                           // of its columns in time series; "" = solid0, solid1, ...
+    Vec3 velocity{0, 0, 0};                     // m/s
+    float spin = 0;                             // degrees/s
+    Axis spinAxis = Axis::Z;                    // through its middle; keyframes turn about it too
+    Keyframes keyframes;                        // in the order of their times
+    std::string motion;                         // a CSV that becomes the keyframes when the scene is read
+    bool moves() const { return !keyframes.empty() || velocity != Vec3{} || spin != 0; }
 };
 
 struct Window {
@@ -96,7 +116,7 @@ struct Fluid {
     EquationOfState equationOfState = EquationOfState::Tait;
     int gamma = 7;                              // Tait exponent
     float stiffness = 0;                        // Pa, pressure scale k of p = k((rho/rho0)^gamma - 1); 0 = rho0 c^2/gamma
-    std::vector<Body> bodies{Body{.max{0.5f, 0.54f, 0.6f}}};
+    std::vector<Body> bodies{Body{{.max{0.5f, 0.54f, 0.6f}}}};
 };
 
 struct TimeKnobs {
@@ -144,6 +164,7 @@ struct Scene {
     SimulationKnobs simulation;
     Domain domain;
     Walls walls;
+    std::vector<Solid> solids;
     Fluid fluid;
     TimeKnobs time;
     View view;

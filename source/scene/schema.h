@@ -29,7 +29,7 @@ constexpr auto enumNames(Kernel) { return std::array{"wendland_c2", "cubic_splin
 constexpr auto enumNames(EquationOfState) { return std::array{"tait", "linear"}; }
 constexpr auto enumNames(WallKind) { return std::array{"reflect", "particles"}; }
 constexpr auto enumNames(TimeMode) { return std::array{"fixed", "cfl"}; }
-constexpr auto enumNames(Shape) { return std::array{"block", "sphere", "cylinder"}; }
+constexpr auto enumNames(Shape) { return std::array{"block", "sphere", "cylinder", "wedge"}; }
 constexpr auto enumNames(Axis) { return std::array{"x", "y", "z"}; }
 constexpr auto enumNames(ColorBy) {
     return std::array{"plain", "velocity", "pressure", "density", "acceleration", "id"};
@@ -44,22 +44,28 @@ constexpr auto enumNames(Face) {
 }
 constexpr auto enumNames(RangeMode) { return std::array{"frame", "run", "fixed"}; }
 
-// Visits one body's knobs; `at` is its path, e.g. "fluid.bodies[0]". Which knobs a body has depends
-// on its shape, which is visited first, so that a reader has set it before the others are chosen.
-template <class B, class Visitor>
-void visitBody(B& b, const std::string& at, Visitor&& visit) {
-    visit(at + ".shape", b.shape, Knob{"", 0, 0, "block, sphere or cylinder", Restart});
-    if (b.shape == Shape::Block) {
-        visit(at + ".min", b.min, Knob{"m", -1e4f, 1e4f, "lower corner", Restart});
-        visit(at + ".max", b.max, Knob{"m", -1e4f, 1e4f, "upper corner", Restart});
+// Which knobs a shape has depends on which it is; that is visited first, so that a reader has set it before the others are chosen.
+template <class F, class Visitor>
+void visitForm(F& f, const std::string& at, Visitor&& visit) {
+    visit(at + ".shape", f.shape, Knob{"", 0, 0, "block, sphere, cylinder or wedge", Restart});
+    if (f.shape == Shape::Block || f.shape == Shape::Wedge) {
+        visit(at + ".min", f.min, Knob{"m", -1e4f, 1e4f, "lower corner", Restart});
+        visit(at + ".max", f.max, Knob{"m", -1e4f, 1e4f, "upper corner", Restart});
     } else {
-        visit(at + ".center", b.center, Knob{"m", -1e4f, 1e4f, "centre", Restart});
-        visit(at + ".radius", b.radius, Knob{"m", 1e-6f, 1e4f, "radius", Restart});
+        visit(at + ".center", f.center, Knob{"m", -1e4f, 1e4f, "centre", Restart});
+        visit(at + ".radius", f.radius, Knob{"m", 1e-6f, 1e4f, "radius", Restart});
     }
-    if (b.shape == Shape::Cylinder) {
-        visit(at + ".height", b.height, Knob{"m", 1e-6f, 1e4f, "length along the axis", Restart});
-        visit(at + ".axis", b.axis, Knob{"", 0, 0, "direction of the axis", Restart});
+    if (f.shape == Shape::Cylinder) {
+        visit(at + ".height", f.height, Knob{"m", 1e-6f, 1e4f, "length along the axis", Restart});
+        visit(at + ".axis", f.axis, Knob{"", 0, 0, "direction of the axis", Restart});
     }
+}
+
+// Visits the knobs of one member of a list; `at` is its path, e.g. "fluid.bodies[0]".
+template <class B, class Visitor>
+requires std::is_same_v<std::remove_const_t<B>, Body>
+void visitMember(B& b, const std::string& at, Visitor&& visit) {
+    visitForm(b, at, visit);
     visit(at + ".velocity", b.velocity, Knob{"m/s", -1e3f, 1e3f, "initial velocity", Restart});
     visit(at + ".field", b.field,
           Knob{"", 0, 0,
@@ -70,8 +76,38 @@ void visitBody(B& b, const std::string& at, Visitor&& visit) {
     visit(at + ".pressure", b.pressure,
           Knob{"", 0, 0, "at the start, where density is carried: none, or of the column above in this body", Restart});
 }
+template <class S, class Visitor>
+requires std::is_same_v<std::remove_const_t<S>, Solid>
+void visitMember(S& s, const std::string& at, Visitor&& visit) {
+    visitForm(s, at, visit);
+    visit(at + ".name", s.name, Knob{"", 0, 0, "of its columns in time series", Restart});
+    visit(at + ".velocity", s.velocity, Knob{"m/s", -1e3f, 1e3f, "with which it goes on and on", Restart});
+    visit(at + ".spin", s.spin, Knob{"degrees/s", -1e5f, 1e5f, "turns about its middle", Restart});
+    visit(at + ".spin_axis", s.spinAxis, Knob{"", 0, 0, "direction of the axis that it turns about", Restart});
+    visit(at + ".keyframes", s.keyframes,
+          Knob{"", -1e4f, 1e4f,
+               "where it is when: [[t, x, y, z], ...] or [[t, x, y, z, turn], ...] in s, m and degrees, relative "
+               "to its place here; on straight lines between, at rest before and after",
+               Restart});
+    visit(at + ".motion", s.motion,
+          Knob{"", 0, 0, "CSV with the keyframes, columns t, x, y, z or t, vx, vy, vz, and turn if it turns", Restart});
+}
+
+// Calls visit(path, list, what) for each list of objects that a scene has. The members' knobs are visitKnobs'.
+template <class S, class Visitor>
+requires std::is_same_v<std::remove_const_t<S>, Scene>
+void visitLists(S& scene, Visitor&& visit) {
+    visit("solids", scene.solids, "obstacles");
+    visit("fluid.bodies", scene.fluid.bodies, "bodies of fluid");
+}
 
 namespace schema {
+
+template <class S, class Visitor>
+void visitMembers(S& list, const std::string& path, Visitor&& visit) {
+    for (size_t i = 0; i < list.size(); ++i) visitMember(list[i], path + "[" + std::to_string(i) + "]", visit);
+}
+
 
 template <class S, class Visitor>
 void visitProgram(S& s, Visitor&& visit) {
@@ -177,8 +213,6 @@ void visitFluid(S& s, Visitor&& visit) {
     visit("fluid.gamma", f.gamma, Knob{"", 1, 10, "exponent of the Tait equation"});
     visit("fluid.stiffness", f.stiffness,
           Knob{"Pa", 0, 1e10f, "pressure scale, 0 = rest density x sound speed^2 / gamma"});
-    for (size_t b = 0; b < f.bodies.size(); ++b)
-        visitBody(f.bodies[b], "fluid.bodies[" + std::to_string(b) + "]", visit);
 }
 
 template <class S, class Visitor>
@@ -231,14 +265,16 @@ void visitOutput(S& s, Visitor&& visit) {
 }  // namespace schema
 
 // Calls visit(path, value, knob) for every knob of the scene. `visit` is a callable for float, int,
-// bool, std::string, Vec3 and every enumeration above; values are references into the scene (const
+// bool, std::string, Vec3, Keyframes and every enumeration above; values are references into the scene (const
 // when it is).
 template <class S, class Visitor>
 requires std::is_same_v<std::remove_const_t<S>, Scene>
 void visitKnobs(S& scene, Visitor&& visit) {
     schema::visitProgram(scene, visit);
     schema::visitPhysics(scene, visit);
+    schema::visitMembers(scene.solids, "solids", visit);
     schema::visitFluid(scene, visit);
+    schema::visitMembers(scene.fluid.bodies, "fluid.bodies", visit);
     schema::visitPicture(scene, visit);
     schema::visitOutput(scene, visit);
 }

@@ -180,7 +180,7 @@ TEST(Gpu, TooLargeASceneIsRefusedAndLeavesTheOldRunAlone) {
     running->step(3);
     Scene huge = scene;
     huge.domain.max = {40, 40, 40};
-    huge.fluid.bodies = {Body{.max{40, 40, 40}}};
+    huge.fluid.bodies = {Body{{.max{40, 40, 40}}}};
     huge.simulation.spacing = emulated ? 0.14f : 0.018f;   // 23 million, 11 thousand million
     try {
         makeSimulation(huge);

@@ -45,6 +45,7 @@ bool edit(int& value, const Knob& knob) {
 
 bool edit(bool& value, const Knob&) { return ImGui::Checkbox("", &value); }
 
+bool edit(Keyframes&, const Knob&) { return false; }   // no live knob
 bool edit(std::string& value, const Knob&) { return ImGui::InputText("", &value); }
 
 bool edit(Vec3& value, const Knob& knob) {

@@ -69,7 +69,7 @@ TEST(Particles, BlockIsCellCentredAndRelativeToTheDomain) {
 }
 
 TEST(Particles, WallsContinueTheFluidsLattice) {
-    Scene scene = oneBody(Body{.max{1, 1, 1}});
+    Scene scene = oneBody(Body{{.max{1, 1, 1}}});
     scene.simulation.spacing = 0.1f;
     const Placement placement = placeParticles(scene);
     EXPECT_EQ(placement.positions.size(), 1000u);
@@ -91,7 +91,7 @@ TEST(Particles, WallsContinueTheFluidsLattice) {
 }
 
 TEST(Particles, ABlockNeverRoundsUpIntoTheWall) {
-    Scene scene = oneBody(Body{.max{0.51f, 0.2f, 0.2f}});  // 25.5 spacings in a domain as wide
+    Scene scene = oneBody(Body{{.max{0.51f, 0.2f, 0.2f}}});  // 25.5 spacings in a domain as wide
     scene.domain.max = {0.51f, 1, 1};
     for (Vec3 p : placeParticles(scene).positions) ASSERT_LT(p.x, 0.51f - 0.005f);
 }
@@ -128,7 +128,7 @@ TEST(Particles, RoundBodiesAreSymmetricAndHaveTheirVolume) {
 }
 
 TEST(Particles, OverlappingBodiesKeepTheirDistance) {
-    Body block{.min{0.3f, 0.3f, 0.3f}, .max{0.5f, 0.5f, 0.5f}}, sphere, cylinder;
+    Body block{{.min{0.3f, 0.3f, 0.3f}, .max{0.5f, 0.5f, 0.5f}}}, sphere, cylinder;
     sphere.shape = Shape::Sphere;
     sphere.center = {0.502f, 0.501f, 0.499f};
     sphere.radius = 0.12f;
@@ -147,7 +147,7 @@ TEST(Particles, AbsurdScenesAreCountedWithoutOverflow) {
     Scene scene;
     scene.simulation.spacing = 1e-5f;
     scene.domain.max = {1e4f, 1e4f, 1e4f};
-    scene.fluid.bodies = {Body{.max{1e4f, 1e4f, 1e4f}}, Body{.max{1e4f, 1e4f, 1e4f}}};
+    scene.fluid.bodies = {Body{{.max{1e4f, 1e4f, 1e4f}}}, Body{{.max{1e4f, 1e4f, 1e4f}}}};
     for (Formulation formulation : {Formulation::Wcsph, Formulation::Classic}) {
         scene.simulation.formulation = formulation;
         EXPECT_GT(countParticles(scene).fluid, int64_t(1e18));

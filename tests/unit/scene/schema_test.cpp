@@ -38,10 +38,22 @@ int knobCount(const Scene& scene) {
     return count;
 }
 
+// Of all shapes together.
+template <class Member>
+int memberKnobs() {
+    std::set<std::string> names;
+    for (Shape shape : {Shape::Block, Shape::Sphere, Shape::Cylinder, Shape::Wedge}) {
+        Member member;
+        member.shape = shape;
+        visitMember(member, "m", [&](const std::string& path, const auto&, const Knob&) { names.insert(path); });
+    }
+    return int(names.size());
+}
+
 TEST(Schema, EveryFieldOfASceneHasItsLine) {
     Scene scene;
     scene.fluid.bodies.clear();
-    const int structs = 9;  // window ... output, each one field of Scene
+    const int structs = 10;  // window ... output and the solids, each one field of Scene
     const int fields = fieldCount<Scene>() - structs + fieldCount<Window>() +
                        fieldCount<Compute>() + fieldCount<SimulationKnobs>() +
                        fieldCount<Domain>() + fieldCount<Walls>() + fieldCount<Fluid>() -
@@ -49,14 +61,8 @@ TEST(Schema, EveryFieldOfASceneHasItsLine) {
                        1 /* camera */ + fieldCount<Camera>() + fieldCount<Output>();
     EXPECT_EQ(knobCount(scene), fields);
 
-    std::set<std::string> names;
-    for (Shape shape : {Shape::Block, Shape::Sphere, Shape::Cylinder}) {
-        Body body;
-        body.shape = shape;
-        visitBody(body, "b",
-                  [&](const std::string& path, const auto&, const Knob&) { names.insert(path); });
-    }
-    EXPECT_EQ(int(names.size()), fieldCount<Body>());
+    EXPECT_EQ(memberKnobs<Body>(), fieldCount<Form>() + fieldCount<Body>() - 1 /* the base */);
+    EXPECT_EQ(memberKnobs<Solid>(), fieldCount<Form>() + fieldCount<Solid>() - 1);
 }
 
 TEST(Schema, NamesAreUniqueAndSnakeCase) {

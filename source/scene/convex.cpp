@@ -1,0 +1,60 @@
+#include "scene/convex.h"
+
+#include <cmath>
+
+namespace spindrift {
+
+Vec3d halfExtent(const Form& form) {
+    if (form.shape == Shape::Block || form.shape == Shape::Wedge) return 0.5 * (toDouble(form.max) - toDouble(form.min));
+    Vec3d half{form.radius, form.radius, form.radius};
+    if (form.shape == Shape::Cylinder) half[int(form.axis)] = 0.5 * double(form.height);
+    return half;
+}
+
+double reachOf(const Form& form) {
+    return form.shape == Shape::Sphere ? double(form.radius) : length(halfExtent(form));
+}
+
+void Convex::add(Vec3d direction, Vec3d through) {
+    normal[planes] = normalized(direction);
+    offset[planes] = dot(normal[planes], through);
+    ++planes;
+}
+
+Convex convexOf(const Form& form, int dimensions) {
+    const Vec3d half = halfExtent(form);
+    const bool cornered = form.shape == Shape::Block || form.shape == Shape::Wedge;
+    Convex c;
+    c.middle = cornered ? 0.5 * (toDouble(form.min) + toDouble(form.max)) : toDouble(form.center);
+    for (int k = 0; k < dimensions; ++k) {
+        const bool flat = form.shape == Shape::Block || (form.shape == Shape::Wedge && k == 2) ||
+                          (form.shape == Shape::Cylinder && k == int(form.axis));
+        Vec3d up{0, 0, 0};
+        up[k] = 1;
+        if (flat) c.add(up, half), c.add(-1.0 * up, -1.0 * half);
+        if (!cornered && !flat) c.across[k] = 1;
+    }
+    if (!cornered) c.radius = form.radius;
+    if (form.shape == Shape::Wedge) {
+        const Vec3d ridge{0, half.y, 0};
+        c.add({0, -1, 0}, -1.0 * half);
+        c.add({2 * half.y, half.x, 0}, ridge);
+        c.add({-2 * half.y, half.x, 0}, ridge);
+    }
+    return c;
+}
+
+Convex::Nearest Convex::nearest(Vec3d p) const {
+    Nearest best{-1e300, {0, 0, 0}};
+    for (int k = 0; k < planes; ++k)
+        if (const double d = dot(normal[k], p) - offset[k]; d > best.distance) best = {d, normal[k]};
+    if (radius > 0) {
+        const Vec3d d{across.x * p.x, across.y * p.y, across.z * p.z};
+        const double far = length(d);
+        const Vec3d away = far > 0 ? (1 / far) * d : across.x > 0 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
+        if (far - radius > best.distance) best = {far - radius, away};
+    }
+    return best;
+}
+
+}  // namespace spindrift

@@ -1,0 +1,80 @@
+#include "scene/motion.h"
+
+#include "core/error.h"
+#include "core/table.h"
+#include "scene/convex.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+namespace spindrift {
+namespace {
+
+constexpr double PerDegree = std::numbers::pi / 180;
+// Longer than any run, s.
+constexpr double Forever = 1e9;
+
+Keyframes readKeyframes(const std::string& path) {
+    const bool rates = readTable(path).has("vx");
+    const std::vector<std::string> needed = rates ? std::vector<std::string>{"t", "vx", "vy", "vz"}
+                                                  : std::vector<std::string>{"t", "x", "y", "z"};
+    const Table table = readStrictTable(path, needed);
+    auto value = [&](const std::string& name, size_t row) { return table.has(name) ? table.at(name)[row] : 0.0; };
+    auto row = [&](size_t i) { return Vec3d{value(needed[1], i), value(needed[2], i), value(needed[3], i)}; };
+    Keyframes keyframes;
+    Vec3d offset;
+    double turn = 0;
+    for (size_t i = 0; i < table.rows(); ++i) {
+        if (!rates) {
+            offset = row(i), turn = value("turn", i);
+        } else if (i > 0) {   // velocities in m/s and degrees/s, by trapezoids
+            const double half = (value("t", i) - value("t", i - 1)) / 2;
+            offset = offset + half * (row(i - 1) + row(i));
+            turn += half * (value("turn", i - 1) + value("turn", i));
+        }
+        keyframes.push_back({float(value("t", i)), toFloat(offset), float(turn)});
+    }
+    return keyframes;
+}
+
+}  // namespace
+
+void readMotions(Scene& scene, const std::string& folder, const std::string& place) {
+    for (size_t i = 0; i < scene.solids.size(); ++i) {
+        Solid& solid = scene.solids[i];
+        if (solid.motion.empty()) continue;
+        try {
+            solid.keyframes = readKeyframes((std::filesystem::path(folder) / solid.motion).string());
+        } catch (const Error& error) {
+            throw Error(error.exit, fmt::format("{}: solids[{}].motion: {}", place, i, error.what()));
+        }
+        solid.motion.clear();
+    }
+}
+
+std::vector<MotionKey> motionOf(const Solid& solid) {
+    std::vector<MotionKey> keys;
+    for (const Keyframe& k : solid.keyframes) keys.push_back({k.time, toDouble(k.offset), k.turn * PerDegree});
+    if (keys.empty()) {
+        keys.push_back({0, {}, 0});
+        if (solid.moves()) keys.push_back({Forever, Forever * toDouble(solid.velocity), Forever * solid.spin * PerDegree});
+    }
+    return keys;
+}
+
+double largestSpeed(const Solid& solid) {
+    const double reach = reachOf(solid);
+    const std::vector<MotionKey> keys = motionOf(solid);
+    double most = 0;
+    for (size_t k = 1; k < keys.size(); ++k) {
+        const double time = std::max(keys[k].time - keys[k - 1].time, 1e-9);
+        most = std::max(most, (length(keys[k].offset - keys[k - 1].offset) + reach * std::abs(keys[k].turn - keys[k - 1].turn)) / time);
+    }
+    return most;
+}
+
+}  // namespace spindrift

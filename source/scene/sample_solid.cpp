@@ -1,0 +1,117 @@
+#include "scene/sample_solid.h"
+
+#include "scene/convex.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace spindrift {
+namespace {
+
+using std::numbers::pi;
+struct Point2 { double x, y; };
+
+// Cell centres of n equal pieces of [-half, half].
+std::vector<double> centres(double half, double dx) {
+    const int n = std::max(1, int(std::round(2 * half / dx)));
+    std::vector<double> at;
+    for (int i = 0; i < n; ++i) at.push_back(half * ((2 * i + 1.0) / n - 1));
+    return at;
+}
+
+// How many layers deep the i-th of n cells lies, from the nearer end.
+int depthOf(size_t i, size_t n) { return int(std::min(i, n - 1 - i)); }
+
+// Points on a ring in the plane, `depth` metres inside the outline.
+std::vector<Point2> circle(double radius, double dx) {
+    if (radius < 0.3 * dx) return {{0, 0}};
+    const int n = std::max(3, int(std::round(2 * pi * radius / dx)));
+    std::vector<Point2> ring;
+    for (int i = 0; i < n; ++i) ring.push_back({radius * std::cos(2 * pi * i / n), radius * std::sin(2 * pi * i / n)});
+    return ring;
+}
+
+// The triangle (-b, -h), (b, -h), (0, h), its sides moved inside; nothing where little is left.
+std::vector<Point2> triangle(double b, double h, double depth, double dx) {
+    const double side = std::hypot(b, 2 * h), inRadius = 2 * b * h / (b + side);
+    if (depth > inRadius - 0.2 * dx) return {};
+    // All sides move as the triangle shrinks towards the centre of its inscribed circle.
+    const double scale = 1 - depth / inRadius, centreY = -h + inRadius;
+    auto corner = [&](double x, double y) { return Point2{scale * x, centreY + scale * (y - centreY)}; };
+    const Point2 corners[] = {corner(-b, -h), corner(b, -h), corner(0, h), corner(-b, -h)};
+    std::vector<Point2> ring;
+    for (int k = 0; k < 3; ++k) {
+        const Point2 from = corners[k], to = corners[k + 1];
+        const int n = std::max(1, int(std::round(std::hypot(to.x - from.x, to.y - from.y) / dx)));
+        for (int i = 0; i < n; ++i) ring.push_back({from.x + (to.x - from.x) * i / n, from.y + (to.y - from.y) * i / n});
+    }
+    return ring;
+}
+
+// Evenly on a sphere along a spiral (Fibonacci lattice, Swinbank & Purser 2006).
+void addSphere(double radius, double dx, std::vector<Vec3d>& out) {
+    const int n = std::max(1, int(std::round(4 * pi * radius * radius / (dx * dx))));
+    const double golden = pi * (3 - std::sqrt(5.0));
+    for (int i = 0; i < n; ++i) {
+        const double y = 1 - (2 * i + 1.0) / n, across = std::sqrt(1 - y * y);
+        out.push_back(radius * Vec3d{across * std::cos(golden * i), y, across * std::sin(golden * i)});
+    }
+}
+
+// A lattice that fits the block, without its inside.
+void addBlock(const Scene& scene, Vec3d half, int layers, std::vector<Vec3d>& out) {
+    const double dx = scene.simulation.spacing;
+    const bool flat = scene.simulation.dimensions == 2;
+    const std::vector<double> x = centres(half.x, dx), y = centres(half.y, dx), z = flat ? std::vector<double>{0} : centres(half.z, dx);
+    for (size_t k = 0; k < z.size(); ++k)
+        for (size_t j = 0; j < y.size(); ++j)
+            for (size_t i = 0; i < x.size(); ++i)
+                if (std::min({depthOf(i, x.size()), depthOf(j, y.size()), flat ? layers : depthOf(k, z.size())}) < layers)
+                    out.push_back({x[i], y[j], z[k]});
+}
+
+// Rings in planes along an axis; planes near the ends are filled.
+void addPrism(const Scene& scene, const Solid& solid, int layers, std::vector<Vec3d>& out) {
+    const double dx = scene.simulation.spacing;
+    const Vec3d half = halfExtent(solid);
+    const bool flat = scene.simulation.dimensions == 2, round = solid.shape != Shape::Wedge;
+    const int axis = flat || !round ? 2 : int(solid.axis);
+    const std::vector<double> planes = flat ? std::vector<double>{0} : centres(half[axis], dx);
+    for (size_t k = 0; k < planes.size(); ++k) {
+        const bool filled = !flat && depthOf(k, planes.size()) < layers;
+        for (int layer = 0; filled || layer < layers; ++layer) {
+            const double depth = (layer + 0.5) * dx;
+            if (round && depth > double(solid.radius)) break;
+            const std::vector<Point2> ring = round ? circle(solid.radius - depth, dx) : triangle(half.x, half.y, depth, dx);
+            if (ring.empty()) break;
+            for (const Point2& p : ring) {
+                Vec3d at;
+                at[axis] = planes[k], at[(axis + 1) % 3] = p.x, at[(axis + 2) % 3] = p.y;
+                out.push_back(at);
+            }
+        }
+    }
+}
+
+}  // namespace
+
+int boundaryLayers(const Scene& scene) { return std::max(1, int(std::ceil(scene.simulation.support)) - 1); }
+
+std::vector<Vec3> sampleSolid(const Scene& scene, const Solid& solid) {
+    const int layers = boundaryLayers(scene);
+    const double dx = scene.simulation.spacing;
+    const bool flat = scene.simulation.dimensions == 2;
+    std::vector<Vec3d> points;
+    if (solid.shape == Shape::Block) addBlock(scene, halfExtent(solid), layers, points);
+    else if (solid.shape == Shape::Sphere && !flat)
+        for (int k = 0; k < layers && (k + 0.5) * dx < double(solid.radius); ++k) addSphere(solid.radius - (k + 0.5) * dx, dx, points);
+    else addPrism(scene, solid, layers, points);
+    Vec3d middle = convexOf(solid, 3).middle - toDouble(scene.domain.min);
+    if (flat) middle.z = 0.5 * (toDouble(scene.domain.max) - toDouble(scene.domain.min)).z;
+    std::vector<Vec3> out;
+    for (const Vec3d& p : points) out.push_back(toFloat(middle + p));
+    return out;
+}
+
+}  // namespace spindrift

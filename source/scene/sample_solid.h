@@ -1,0 +1,16 @@
+#pragma once
+// Solids -> boundary particles.
+#include "scene/scene.h"
+
+#include <vector>
+
+namespace spindrift {
+
+// Layers of boundary particles behind a surface: all that fluid half a spacing in front of it can see.
+int boundaryLayers(const Scene&);
+
+// Layers of particles inside the solid's surface, the first one half a spacing deep and each parallel to it, about one spacing apart: m
+// relative to domain.min, in two dimensions in the middle of z.
+std::vector<Vec3> sampleSolid(const Scene&, const Solid&);
+
+}  // namespace spindrift
