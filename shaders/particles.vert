@@ -13,12 +13,13 @@ vec3 tableColor(float value) {
 void main() {
     bool wall = gl_VertexID >= int(frame.particle.w);
     vec4 place = frame.view * vec4(vertex.xyz, 1.0);
-    float radius = frame.particle.x * (wall ? 0.4 : 1.0);
+    bool solid = wall && vertex.w > 0.5;
+    float radius = frame.particle.x * (wall && !solid ? 0.4 : 1.0);
     float pixels = max(radius * frame.particle.z / max(-place.z, 1e-6), frame.particle.y);
 
     vec3 color = frame.color.w > 0.0 ? vec3(0.25, 0.56, 0.90) : tableColor(vertex.w);
     if (wall) color = vec3(0.46, 0.49, 0.55);
-    tint = vec4(color * color, wall ? 0.4 : 1.0);
+    tint = vec4(color * color, wall && !solid ? 0.4 : 1.0);
 
     gl_Position = frame.projection * place;
     // The square's depth is the sphere's nearest point; the fragment goes back from there.

@@ -66,22 +66,21 @@ void keepCamera(Scene& scene, const OrbitCamera& camera) {
 Frame::Frame(int width, int height, int samples) : renderer_(width, height, samples) {}
 
 void Frame::update(Simulation& simulation, const Scene& scene) {
-    const bool walls = scene.view.showWalls;
     fluidCount_ = simulation.fluidCount();
-    wallCount_ = walls ? simulation.wallCount() : 0;
+    wallCount_ = scene.view.showWalls ? simulation.wallCount() : simulation.solidParticleCount();
     vertices_.resize(fluidCount_ + wallCount_);
-    seen_ = write(simulation, scene.view.colorBy, walls);
+    seen_ = write(simulation, scene.view.colorBy);
     if (scene.view.colorBy != writtenBy_) fresh_ = true;
     writtenBy_ = scene.view.colorBy;
     run_ = fresh_ ? seen_ : Range{std::min(run_.min, seen_.min), std::max(run_.max, seen_.max)};
     fresh_ = false;
 }
 
-Range Frame::write(Simulation& simulation, ColorBy by, bool walls) {
+Range Frame::write(Simulation& simulation, ColorBy by) {
     const VertexMemory memory = vertices_.map(simulation.cudaDevice());
     copied_ = memory.device != simulation.cudaDevice();
     try {
-        const Range range = simulation.writeVertices(memory, by, walls);
+        const Range range = simulation.writeVertices(memory, by, wallCount_);
         vertices_.unmap();
         return range;
     } catch (...) {
@@ -108,7 +107,6 @@ void Frame::draw(const Scene& scene, std::vector<Ring> rings) {
     settings.domainSize = domainSize(scene);
     settings.fluidCount = fluidCount_;
     settings.wallCount = wallCount_;
-    settings.walls = view.showWalls;
     settings.outline = view.showOutline;
     settings.ground = view.showGround;
     settings.diameter = scene.simulation.spacing * view.particleScale;

@@ -35,7 +35,7 @@ public:
     Range range(const View&) const;
 
 private:
-    Range write(Simulation&, ColorBy, bool walls);
+    Range write(Simulation&, ColorBy);
 
     Renderer renderer_;
     VertexBuffer vertices_;

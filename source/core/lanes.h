@@ -40,6 +40,9 @@ template <class R> HD inline Vector<R> addScaled(Vector<R> a, R s, Vector<R> b) 
 template <class R> HD inline Vector<R> subtractScaled(Vector<R> a, R s, Vector<R> b) {
     return {negMulAdd(s, b.x, a.x), negMulAdd(s, b.y, a.y), negMulAdd(s, b.z, a.z)};
 }
+template <class R> HD inline Vector<R> cross(Vector<R> a, Vector<R> b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
 // A symmetric matrix.
 template <class R> struct Symmetric { R xx, yy, zz, xy, xz, yz; };
 template <class R> HD inline Symmetric<R> addOuter(Symmetric<R> m, R s, Vector<R> r) {

@@ -132,7 +132,20 @@ void writeAll(hid_t file, const Scene& scene, const RunState& s) {
     writeVectors(file, "positions", "m", s.particles.positions);
     writeVectors(file, "velocities", "m/s", s.particles.velocities);
     writeVectors(file, "walls", "m", s.particles.walls);
+    if (!s.particles.solidSizes.empty())
+        writeNumbers(file, "solid sizes", std::vector<double>(s.particles.solidSizes.begin(), s.particles.solidSizes.end()));
     if (!s.densities.empty()) writeFloats(file, "densities", "kg/m^3", s.densities.data(), s.densities.size(), 1);
+}
+
+// How many of the walls belong to each solid.
+void readSolidSizes(hid_t file, Checkpoint& c) {
+    size_t all = 0;
+    for (double size : readNumbers(file, "solid sizes", c.scene.solids.size())) {
+        if (!(size >= 0 && size <= 1e9)) throw Trouble{"solid sizes"};
+        c.state.particles.solidSizes.push_back(int(size));
+        all += size_t(size);
+    }
+    if (all > c.state.particles.walls.size()) throw Trouble{"solid sizes"};
 }
 
 Checkpoint readAll(hid_t file, const std::string& path) {
@@ -148,6 +161,7 @@ Checkpoint readAll(hid_t file, const std::string& path) {
     c.state.particles.positions = readVectors(file, "positions");
     c.state.particles.velocities = readVectors(file, "velocities");
     c.state.particles.walls = readVectors(file, "walls");
+    if (!c.scene.solids.empty()) readSolidSizes(file, c);
     if (carriesDensity(c.scene)) c.state.densities = readArray<float>(file, "densities", H5T_NATIVE_FLOAT, 1);
     if (c.state.particles.positions.empty() || c.state.particles.velocities.size() != c.state.particles.positions.size())
         throw Trouble{"velocities"};

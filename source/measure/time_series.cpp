@@ -33,19 +33,37 @@ constexpr Quantity Quantities[] = {
     {"max_speed", "m/s", [](const Measurement& m) { return m.maxSpeed; }},
 };
 
+struct SolidQuantity { const char *name, *unit; Vec3d SolidMeasurement::*of; };
+constexpr SolidQuantity SolidQuantities[] = {{"position", "m", &SolidMeasurement::position},
+                                             {"pressure_force", "N", &SolidMeasurement::pressureForce},
+                                             {"viscous_force", "N", &SolidMeasurement::viscousForce},
+                                             {"torque", "N m", &SolidMeasurement::torque}};
+
+// Calls f(name, unit, value) for each column but those of passes.
+template <class F> void forValues(const Measurement& m, const F& f) {
+    for (const Quantity& q : Quantities) f(q.name, q.unit, q.of(m));
+    for (const SolidMeasurement& s : m.solids)
+        for (const SolidQuantity& q : SolidQuantities)
+            for (int k = 0; k < 3; ++k) f(fmt::format("{}.{}_{}", s.name, q.name, "xyz"[k]), q.unit, (s.*q.of)[k]);
+}
+
 }  // namespace
 
 void TimeSeries::add(const Measurement& m, const std::vector<PassTime>& passes) {
-    if (columns_.empty())
-        for (const Quantity& q : Quantities) columns_.push_back({q.name, q.unit});
+    std::vector<double> row;
+    const bool first = columns_.empty();
+    forValues(m, [&](const std::string& name, const char* unit, double value) {
+        if (first) columns_.push_back({name, unit});
+        row.push_back(value);
+    });
     for (const PassTime& pass : passes) {
         const auto named = [&](const Column& c) { return c.name == pass.name; };
         if (std::none_of(columns_.begin(), columns_.end(), named))
             columns_.push_back({pass.name, "ms"});
     }
-    std::vector<double> row(columns_.size());
-    for (size_t i = 0; i < std::size(Quantities); ++i) row[i] = Quantities[i].of(m);
-    for (size_t i = std::size(Quantities); i < row.size(); ++i)
+    const size_t own = row.size();
+    row.resize(columns_.size());
+    for (size_t i = own; i < row.size(); ++i)
         for (const PassTime& pass : passes)
             if (columns_[i].name == pass.name && pass.runs > 0)
                 row[i] = pass.ms / double(pass.runs);

@@ -169,7 +169,7 @@ void Renderer::drawParticles(const VertexBuffer& vertices, const DrawSettings& s
     glBindTextureUnit(0, tables_);
     glVertexArrayVertexBuffer(vertices_, 0, vertices.name(), 0, sizeof(Vertex));
     glBindVertexArray(vertices_);
-    glDrawArrays(GL_POINTS, 0, s.fluidCount + (s.walls ? s.wallCount : 0));
+    glDrawArrays(GL_POINTS, 0, s.fluidCount + s.wallCount);
     glDisable(GL_SAMPLE_ALPHA_TO_COVERAGE);
 }
 

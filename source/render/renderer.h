@@ -27,7 +27,7 @@ struct DrawSettings {
     Vec3 domainSize;
     int fluidCount = 0,
         wallCount = 0;  // the buffer's first vertices are fluid, the next ones walls
-    bool walls = false, outline = true, ground = true;
+    bool outline = true, ground = true;
     float diameter = 0.02f;
     float minimumPixels = 0;  // particles are never drawn smaller than this
     bool plain = false;       // one colour instead of the table

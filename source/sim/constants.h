@@ -6,6 +6,7 @@
 #define SPINDRIFT_SIM_CONSTANTS_H
 #endif
 
+#include "scene/motion.h"
 #include "sim/kernels.h"
 #include "sim/run_state.h"
 #include "sim/view.h"
@@ -114,6 +115,7 @@ template <class Kernel> Constants makeConstants(const Scene& s, const FluidExten
     c.centralPull = real(s.simulation.centralRate * s.simulation.centralRate);
     c.center = toVector(0.5f * size);
     slideFace(s, size, c);
+    for (const Solid& solid : s.solids) c.solidSpeed = std::max(c.solidSpeed, real(spindrift::largestSpeed(solid)));
     c.low = toVector(s.walls.margin * size);
     c.high = toVector((1 - s.walls.margin) * size);
     c.periodic = s.domain.periodicX || s.domain.periodicY || s.domain.periodicZ;

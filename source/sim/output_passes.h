@@ -45,6 +45,19 @@ template <class Value> struct WriteVertices {
     }
 };
 
+// The same for the boundary particles with the first ids; 1 for those of solids, ids below solidsEnd, 0 for the domain's walls.
+struct WriteWallVertices {
+    using Index = int;
+    Particles p;
+    Vertex* out;
+    int solidsEnd, end;
+    HD void operator()(int i) const {
+        if (p.id[i] < 0 || p.id[i] >= end) return;
+        const Vector<real> x = load(p.position, i);
+        out[p.id[i]] = {float(x.x), float(x.y), float(x.z), p.id[i] < solidsEnd ? 1.0f : 0.0f};
+    }
+};
+
 // How the values are spread over a range.
 template <class Value> struct CountValues {
     static constexpr int bins = 512;

@@ -26,7 +26,7 @@ public:
 
     Particles view() const {
         return {slots_, id_.data(), {position_.data()}, {velocity_.data()}, {acceleration_.data()},
-                {density_.data()}, {inverseDensity_.data()}, {pressureTerm_.data()}, {mass_.data()},
+                {density_.data()}, {inverseDensity_.data()}, {pressureTerm_.data()}, {mass_.data()}, {outward_.data()}, {ownVelocity_.data()},
                 {densityRate_.data()}, {shiftVelocity_.data()}, {shiftAcceleration_.data()}};
     }
 
@@ -84,6 +84,7 @@ public:
     int side() const { return side_; }
     // Boundary particles have a velocity only where fluid sticks to them, a density only where its gradient is wanted.
     void carryVelocity() { carriesVelocity_ = true, resize(slots_); }
+    void move() { moves_ = true, resize(slots_); }
     void haveDensity() { hasDensity_ = true, resize(slots_); }
     // Fluid's density comes from a sum, or goes from step to step with a rate; with shifting its particles leave the fluid's paths.
     void carryDensity() { carriesDensity_ = true; }
@@ -114,8 +115,7 @@ public:
         std::vector<int> id = copy(id_);
         std::vector<real> x = copy(position_), u = copy(velocity_), a = copy(acceleration_);
         std::vector<real> rho = copy(density_), term = copy(pressureTerm_);
-        const Particles host{slots_, id.data(), {x.data()}, {u.data()}, {a.data()},
-                             {rho.data()}, {nullptr}, {term.data()}, {nullptr}, {nullptr}, {nullptr}, {nullptr}};
+        const Particles host = onHost(slots_, id, x, u, a, rho, term);
         std::vector<Particle> out(count);
         for (int i = 0; i < slots_; ++i)
             if (id[i] >= 0) out[id[i]] = describe(host, i, origin);
@@ -132,8 +132,7 @@ public:
         std::vector<real> x = vectors(position_), u = vectors(velocity_), a = vectors(acceleration_);
         std::vector<real> rho = numbers(density_), term = numbers(pressureTerm_);
         std::vector<int> own(ids.begin() + first, ids.begin() + first + clusterSize);
-        const Particles host{clusterSize, own.data(), {x.data()}, {u.data()}, {a.data()},
-                             {rho.data()}, {nullptr}, {term.data()}, {nullptr}, {nullptr}, {nullptr}, {nullptr}};
+        const Particles host = onHost(clusterSize, own, x, u, a, rho, term);
         return describe(host, slot - first, origin);
     }
 
@@ -145,12 +144,25 @@ private:
         pressureTerm_.resize(slots);
         if (carriesVelocity_) velocity_.resize(vectorSize(slots));
         if (hasDensity_) density_.resize(slots);
-        if (kind_ == Kind::Walls) return mass_.resize(slots);
+        if (kind_ == Kind::Walls) {
+            mass_.resize(slots);
+            if (carriesVelocity_) outward_.resize(vectorSize(slots));
+            if (moves_) ownVelocity_.resize(vectorSize(slots));
+            return;
+        }
         acceleration_.resize(vectorSize(slots));
         inverseDensity_.resize(slots);
         if (carriesDensity_) densityRate_.resize(slots);
         if (shifts_)
             for (auto* field : {&shiftVelocity_, &shiftAcceleration_}) field->resize(vectorSize(slots));
+    }
+    static Particles onHost(int slots, std::vector<int>& id, std::vector<real>& x, std::vector<real>& u, std::vector<real>& a,
+                            std::vector<real>& rho, std::vector<real>& term) {
+        Particles p{};
+        p.slots = slots, p.id = id.data();
+        p.position = {x.data()}, p.velocity = {u.data()}, p.acceleration = {a.data()};
+        p.density = {rho.data()}, p.pressureTerm = {term.data()};
+        return p;
     }
     static Particle describe(const Particles& host, int i, Vec3 origin) {
         auto toVec3d = [](Vector<real> v) { return Vec3d{double(v.x), double(v.y), double(v.z)}; };
@@ -177,13 +189,15 @@ private:
 
     Device& device_;
     Kind kind_;
-    bool carriesVelocity_ = kind_ == Kind::Fluid, hasDensity_ = kind_ == Kind::Fluid, carriesDensity_ = false, shifts_ = false;
+    bool carriesVelocity_ = kind_ == Kind::Fluid, hasDensity_ = kind_ == Kind::Fluid, carriesDensity_ = false, shifts_ = false,
+         moves_ = false;
     int slots_ = 0, side_ = 0;
     Buffer<int, Device> id_{device_}, sortedId_{device_}, key_{device_}, order_{device_}, cellStart_{device_};
     Buffer<real, Device> position_{device_}, velocity_{device_}, acceleration_{device_};
     Buffer<real, Device> sortedPosition_{device_}, sortedVelocity_{device_}, sortedDensity_{device_};
     Buffer<real, Device> densityRate_{device_}, shiftVelocity_{device_}, shiftAcceleration_{device_};
-    Buffer<real, Device> density_{device_}, inverseDensity_{device_}, pressureTerm_{device_}, mass_{device_};
+    Buffer<real, Device> density_{device_}, inverseDensity_{device_}, pressureTerm_{device_}, mass_{device_}, outward_{device_},
+        ownVelocity_{device_};
 };
 
 }  // namespace spindrift::LANES

@@ -102,7 +102,7 @@ struct ApplyEquationOfState {
 };
 
 // What the fluid's pressure would be at a boundary particle: p_b = sum_f (p_f + rho_f g.(x_b - x_f)) W / sum_f W,
-// Adami 2012, eq. 27, for walls that don't accelerate. With `sticks` also the velocity that makes it the wall's own at the
+// Adami 2012, eq. 27, without the wall's acceleration. With `sticks` also the velocity that makes it the wall's own at the
 // wall, along a straight line from the mean of the fluid nearby (Adami 2012 takes both sides as equally far, as Morris 1997 does not); with
 // `dense` the density of that pressure, for its gradient.
 template <class Kernel, bool sticks, bool dense> struct ExtrapolateToWalls {
@@ -111,7 +111,9 @@ template <class Kernel, bool sticks, bool dense> struct ExtrapolateToWalls {
     View v;
     HD void operator()(Group b) const {
         const Vector<R> x = load(v.walls.position, b);
-        const Vector<R> force = bodyForce(v.c, x), out = outward(v.c, x);
+        const Vector<R> force = bodyForce(v.c, x);
+        Vector<R> out;
+        if constexpr (sticks) out = load(v.walls.outward, b);
         R pressure = 0, weight = 0, apart = 0;
         Vector<R> velocity{0, 0, 0};
         forNeighbours<Lists::All>(v, v.fluidNearWalls, b, x, [&](const auto& p, Four j) LANE_CALL {
@@ -126,7 +128,7 @@ template <class Kernel, bool sticks, bool dense> struct ExtrapolateToWalls {
         const R perWeight = R(1) / max(total(weight), R(real(1e-6)));
         const R mean = max(total(pressure) * perWeight, R(v.c.leastPressure));
         store(v.walls.pressureTerm, b, mean * R(1 / (v.c.restDensity * v.c.restDensity)));
-        if constexpr (sticks) storeVelocity(b, wallVelocity(v.c, x), perWeight * total(velocity), out, perWeight * total(apart));
+        if constexpr (sticks) storeVelocity(b, ownVelocity(v.walls, b), perWeight * total(velocity), out, perWeight * total(apart));
         if constexpr (dense)
             store(v.walls.density, b, mulAdd(mean, R(1 / (v.c.soundSpeed * v.c.soundSpeed)), R(v.c.restDensity)));
     }
@@ -211,7 +213,7 @@ template <class Kernel> struct ComputeDensityRate {
         });
         R walls = 0;
         forNeighbours<Lists::Pruned>(v, v.wallsNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
-            walls = mulAdd(Kernel::g(p.q) * load(v.walls.mass, j), dot(u - wallVelocity(v.c, x - p.r), p.r), walls);
+            walls = mulAdd(Kernel::g(p.q) * load(v.walls.mass, j), dot(u - ownVelocity(v.walls, j), p.r), walls);
         });
         const R perRest = 1 / v.c.restDensity;
         store(v.fluid.densityRate, i, R(v.c.gradientScale) * mulAdd(rho * perRest, total(walls), total(sum)));
@@ -251,7 +253,7 @@ template <class Kernel> struct ComputeTransport {
                   load(v.fluid.density, j) - rho, crowding(p.q));
         });
         forNeighbours<Lists::Pruned>(v, v.wallsNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
-            s.add(Kernel::g(p.q) * load(v.walls.mass, j) * perRest, p.r, wallVelocity(v.c, x - p.r) - own,
+            s.add(Kernel::g(p.q) * load(v.walls.mass, j) * perRest, p.r, ownVelocity(v.walls, j) - own,
                   load(v.walls.density, j) - rho, crowding(p.q));
         });
         finish(i, rho, s);
@@ -319,7 +321,7 @@ struct ChooseTimeStep {
         if (dt <= 0) {
             const real h = c.support / 2;
             const real pull = squareRoot(real(extremes->acceleration2));
-            dt = min(c.cfl * h / (c.soundSpeed + speed), min(c.maxStep, c.viscousStep));
+            dt = min(c.cfl * h / (c.soundSpeed + max(speed, c.solidSpeed)), min(c.maxStep, c.viscousStep));
             dt = min(dt, real(0.25) * squareRoot(h / max(pull, real(1e-12))));
         }
         v.state->dt = dt;

@@ -20,6 +20,14 @@ struct PlanRow { std::string name, skipped; };
 // Where the values of the vertices lie, a few outliers on either side left out (0.5 % each): what a colour scale needs.
 struct Range { float min, max; };
 
+// What fluid does to a solid, and where it is. N and N m; in two dimensions on a slab one spacing thick.
+struct SolidMeasurement {
+    std::string name;                      // the scene's, or solid0, solid1, ...
+    Vec3d position;                        // m, of its middle, world coordinates
+    Vec3d pressureForce, viscousForce;     // N
+    Vec3d torque;                          // N m, about its middle
+};
+
 // What a run says of itself. Energies in J, momentum in kg m/s, lengths in m; sums in double precision.
 struct Measurement {
     double time = 0;                 // s
@@ -33,6 +41,7 @@ struct Measurement {
     double densityError = 0;         // mean of max(rho/rho0 - 1, 0): compression only
     double maxDensityError = 0;      // largest rho/rho0 - 1
     double maxSpeed = 0;             // m/s
+    std::vector<SolidMeasurement> solids;   // one for each of the scene's
     bool finite = true;              // no NaN or infinity in position, velocity, density
 };
 
@@ -55,10 +64,12 @@ public:
     // Fluid particles have ids [0, fluidCount), boundary particles [fluidCount, fluidCount + wallCount).
     virtual int fluidCount() const = 0;
     virtual int wallCount() const = 0;
-    // Fills out[id] for every fluid particle, and for the boundary particles when withWalls. `out` must hold
-    // fluidCount (+ wallCount) vertices; memory of cudaDevice() is written by a kernel, host memory of a GPU run by one
-    // copy. Returns the range of the fluid's values. Boundary value: 0.
-    virtual Range writeVertices(VertexMemory out, ColorBy, bool withWalls) = 0;
+    // The first of the boundary particles belong to solids.
+    virtual int solidParticleCount() const = 0;
+    // Fills out[id] for every fluid particle, and for the first `walls` of the boundary particles. `out` must hold
+    // fluidCount + walls vertices; memory of cudaDevice() is written by a kernel, host memory of a GPU run by one
+    // copy. Returns the range of the fluid's values. Boundary value: 1 of a solid, 0 of the domain's walls.
+    virtual Range writeVertices(VertexMemory out, ColorBy, int walls) = 0;
 
     virtual Measurement measure() = 0;
     // All fluid particles, in the order of their ids; one of them by its id in [0, fluidCount).

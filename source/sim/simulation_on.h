@@ -14,6 +14,7 @@
 #include "sim/passes.h"
 #include "sim/search.h"
 #include "sim/simulation.h"
+#include "sim/solids.h"
 
 #include <numeric>
 #include <string>
@@ -26,14 +27,17 @@ public:
     SimulationOn(const Scene& scene, const RunState& state, Device device, std::string deviceName)
         : device_(std::move(device)), deviceName_(std::move(deviceName)), scene_(scene),
           fluidCount_(int(state.particles.positions.size())), wallCount_(int(state.particles.walls.size())),
+          wallsAtHome_(state.particles.walls), solidSizes_(state.particles.solidSizes),
           extent_(state.start), grid_(makeGrid(scene, size_t(fluidCount_) + size_t(wallCount_))) {
         if (carriesDensity(scene)) fluid_.carryDensity();
         if (shifts()) fluid_.shift(), walls_.haveDensity();
-        walls_.upload(state.particles.walls, {}, {}, fluidCount_);
+        walls_.upload(wallsAtHome_, {}, {}, fluidCount_);
+        solids_.place(scene, wallsAtHome_, solidSizes_, fluidCount_);
+        if (wallsMove()) walls_.move();
         clock_.resize(1);
         extremes_.resize(1);
         apply(scene);
-        placeWalls();
+        weighWalls();
         restart(state);
     }
 
@@ -41,6 +45,7 @@ public:
         CHECK(int(state.particles.positions.size()) == fluidCount_);
         fluid_.upload(state.particles.positions, state.particles.velocities, densitiesOf(state), 0);
         device_.upload(clock_.data(), &state.clock, 1);
+        if (solids_.moves()) walls_.upload(wallsAtHome_, {}, {}, fluidCount_);
         travel_ = 1e30;
         // Density and acceleration of the first picture.
         for (Row& row : plan_)
@@ -55,6 +60,7 @@ public:
             constants_ = makeConstants<K>(scene_, extent_);
             makePlan<K>();
         });
+        if (wallsMove() && !solids_.moves()) solids_.placeWalls(view());   // a face slides at another speed
         if constexpr (Device::recordsSteps)
             for (auto& recording : recordings_) recording.outdate();
     }
@@ -76,12 +82,14 @@ public:
     std::string deviceName() const override { return deviceName_; }
     int cudaDevice() const override { return device_.index(); }
 
-    Range writeVertices(VertexMemory out, ColorBy by, bool withWalls) override {
-        if (out.device == device_.index()) return writeVertices(out.data, by, withWalls);
+    int solidParticleCount() const override { return std::accumulate(solidSizes_.begin(), solidSizes_.end(), 0); }
+
+    Range writeVertices(VertexMemory out, ColorBy by, int walls) override {
+        if (out.device == device_.index()) return writeVertices(out.data, by, walls);
         CHECK(out.device == hostMemory);
-        const int count = fluidCount_ + (withWalls ? wallCount_ : 0);
+        const int count = fluidCount_ + walls;
         staging_.resize(count);
-        const Range range = writeVertices(staging_.data(), by, withWalls);
+        const Range range = writeVertices(staging_.data(), by, walls);
         device_.download(out.data, staging_.data(), count);
         return range;
     }
@@ -89,8 +97,7 @@ public:
     Measurement measure() override;
     RunState state() override {
         RunState s;
-        s.particles = {fluid_.positions(fluidCount_, 0), fluid_.velocities(fluidCount_, 0),
-                       walls_.positions(wallCount_, fluidCount_), {}};
+        s.particles = {fluid_.positions(fluidCount_, 0), fluid_.velocities(fluidCount_, 0), wallsAtHome_, {}, solidSizes_};
         device_.download(&s.clock, clock_.data(), 1);
         s.start = extent_;
         s.densities = fluid_.densities(fluidCount_);
@@ -134,7 +141,8 @@ private:
         using S = SimulationOn;
         plan_.clear();
         rows_.clear();
-        addPass("sort", &S::sortFluid, Initial::Yes);
+        addPass("solids", &S::moveSolids, Initial::Yes, solids_.moves() ? "" : solids_.count() > 0 ? "no solid moves" : "there are no solids");
+        addPass("sort", &S::sort, Initial::Yes);
         addPass("neighbours", &S::findNeighbours, Initial::Yes, keepsLists ? "" : "rows of cells are walked instead of lists");
         carriesDensity(scene_) ? addPass("equation of state", &S::template onFluid<ApplyEquationOfState>, Initial::Yes)
                                : addPass("density", &S::template onFluid<ComputeDensity<K>>, Initial::Yes);
@@ -153,6 +161,8 @@ private:
             addPass("drift", shifts() ? &S::template onFluid<Integrate<Drift | DriftDensity | DriftShifted>>
                                       : &S::template onFluid<Integrate<Drift | DriftDensity>>);
         }
+        addPass("solid collisions", &S::template onFluid<KeepOutOfSolids>, Initial::No, solids_.count() > 0 ? "" : "there are no solids");
+        measureLoads_ = loadPass<K>();
         for (Row& row : plan_) row.time = timeOf(row.name);
     }
     void addPass(const char* name, PassFunction run, Initial initial = Initial::No, const char* skipped = "") {
@@ -178,6 +188,12 @@ private:
         return chooseTerms(scene_, [](auto terms) { return forces<K, Lists::Pruned>(terms); }, TermList<PressureForce>{},
                            OptionalTerms{});
     }
+    // What fluid does to solids, by the terms that act on the fluid. (Corrected gradients have no opposite: their pressure is taken as it is
+    // without.)
+    template <class K> auto loadPass() const {
+        return chooseTerms(scene_, [](auto terms) { return &SimulationOn::template loads<ComputeWallLoads<K, decltype(terms)>>; },
+                           TermList<PressureForce>{}, TermList<LaminarViscosity, ArtificialViscosity>{});
+    }
     template <class K> PassFunction ratePass() const {
         return shifts() ? &SimulationOn::template onFluid<ComputeTransport<K>> : &SimulationOn::template onFluid<ComputeDensityRate<K>>;
     }
@@ -198,10 +214,14 @@ private:
         }
         for (Row& row : plan_) device_.timed(row.time, [&] { (this->*row.run)(); });
     }
-    // One recording for each side of the particles' buffers.
+    // One recording for each side of the particles' buffers; walls are sorted only when they move.
     void stepFromRecording() {
-        auto& recording = recordings_[fluid_.side()];
-        if (device_.replay(recording)) return fluid_.flip();
+        auto& recording = recordings_[2 * walls_.side() + fluid_.side()];
+        if (device_.replay(recording)) {
+            fluid_.flip();
+            if (solids_.moves()) walls_.flip();
+            return;
+        }
         device_.record(recording, [&] {
             for (Row& row : plan_) (this->*row.run)();
         });
@@ -227,19 +247,30 @@ private:
     PassTime* timeOf(const char* name) {
         for (PassTime& t : times_)
             if (t.name == name) return &t;
-        times_.reserve(16);   // rows point into it
+        times_.reserve(32);   // rows point into it
         CHECK(times_.size() < times_.capacity());
         return &times_.emplace_back(PassTime{name, 0, 0});
     }
 
     bool wallsCarryPressure() const { return wallCount_ > 0 && scene_.simulation.formulation != Formulation::Classic; }
+    bool wallsMove() const { return solids_.moves() || (wallCount_ > 0 && scene_.walls.movingFace != Face::None); }
+    template <class Pass> SolidLoad loads(int solid) { return solids_.template load<Pass>(view(), solid, solid == 0); }
     template <class Pass> void onFluid() { device_.forEach(fluid_.slots(), Pass{view()}); }
     template <class Pass> void onWalls() { device_.forEach(walls_.slots(), Pass{view()}); }
     // Order and lists hold until two particles may have come closer by the skin.
     bool nothingMovedFar() const { return keepsLists && travel_ < skin() / 2; }
     float skin() const { return scene_.compute.skin * supportRadius(scene_); }
-    void sortFluid() {
-        if (!nothingMovedFar()) fluid_.sort(grid_);
+    void moveSolids() {
+        solids_.move(clock_.data());
+        solids_.placeWalls(view());
+    }
+    void sort() {
+        if (nothingMovedFar()) return;
+        fluid_.sort(grid_);
+        if (!solids_.moves()) return;
+        walls_.sort(grid_);
+        solids_.placeWalls(view());   // all but their places, which the sort took along
+        wallBoxes_.compute(device_, walls_.view());
     }
     void findNeighbours() {
         if (nothingMovedFar()) return;
@@ -262,11 +293,11 @@ private:
     double largestSpeed(double dt) const {
         const Extremes& e = *extremes_.data();
         const double own = std::max<double>(std::sqrt(e.speed2), length(stir_.velocity)) + dt * std::sqrt(e.acceleration2);
-        return shifts() ? 1.5 * own : own;   // the shift is at most half as fast
+        return std::max(shifts() ? 1.5 * own : own, solids_.largestSpeed());   // the shift is at most half as fast
     }
 
-    // Walls never move: sorted once, and their masses stay.
-    void placeWalls() {
+    // Sorted once where they never move; their masses stay.
+    void weighWalls() {
         walls_.sort(grid_);
         wallBoxes_.compute(device_, walls_.view());
         wallsNearWalls_.build(device_, grid_, supportRadius(scene_), wallBoxes_, walls_.view(), wallBoxes_, walls_.cellStart());
@@ -274,11 +305,14 @@ private:
             device_.forEach(walls_.slots(), ComputeWallMass<decltype(kernel)>{view()});
         });
         wallsNearWalls_ = {};
+        if (solids_.moves()) return solids_.keepMasses(walls_.view());
+        solids_.placeWalls(view());
         walls_.keepOrder();
+        if (!wallsMove()) solids_.forget();
     }
 
     View view() {
-        View v{fluid_.view(), walls_.view(),
+        View v{fluid_.view(), walls_.view(), solids_.data(), solids_.count(),
                {fluidNearFluid_.data(), fluid_.cellStart(), fluid_.view().position},
                {wallsNearFluid_.data(), walls_.cellStart(), walls_.view().position},
                {fluidNearWalls_.data(), fluid_.cellStart(), fluid_.view().position},
@@ -289,9 +323,10 @@ private:
         v.c.stirRadius = stir_.radius;
         return v;
     }
-    Range writeVertices(Vertex* out, ColorBy by, bool withWalls) {
+    Range writeVertices(Vertex* out, ColorBy by, int walls) {
         const View v = view();
-        if (withWalls) device_.template sum<ValueRange>(v.walls.slots, WriteVertices<PlainValue>{v.walls, out});
+        if (walls > 0)
+            device_.forEach(v.walls.slots, WriteWallVertices{v.walls, out, fluidCount_ + solidParticleCount(), fluidCount_ + walls});
         switch (by) {
             case ColorBy::Plain: return write<PlainValue>(v.fluid, out);
             case ColorBy::Velocity: return write<SpeedValue>(v.fluid, out);
@@ -321,6 +356,8 @@ private:
     Scene scene_;
     Stir stir_;
     int fluidCount_, wallCount_;
+    std::vector<Vec3> wallsAtHome_;   // as in Placement
+    std::vector<int> solidSizes_;
     FluidExtent extent_;
     Grid grid_;
     Constants constants_{};
@@ -328,11 +365,13 @@ private:
     std::vector<PlanRow> rows_;
     std::vector<PassTime> times_;
     ParticleSet<Device> fluid_{device_, Kind::Fluid}, walls_{device_, Kind::Walls};
+    Solids<Device> solids_{device_};
+    SolidLoad (SimulationOn::*measureLoads_)(int) = nullptr;
     Buffer<StepState, Device> clock_{device_};
     Buffer<Extremes, Device> extremes_{device_};
     Buffer<Vertex, Device> staging_{device_};   // for vertices that the host is to have
     bool measureNext_ = true;
-    typename Device::Recording recordings_[2];
+    typename Device::Recording recordings_[4];
     static constexpr bool keepsLists = clusterSize > 1;
     double travel_ = 1e30;      // m, bound of any particle's way since the lists were built
     Boxes boxes_, wallBoxes_;
@@ -359,6 +398,15 @@ template <class Device> Measurement SimulationOn<Device>::measure() {
     m.maxDensityError = t.maxDensity / rho0 - 1;
     m.maxSpeed = std::sqrt(t.maxSpeed2);
     m.finite = t.notFinite == 0;
+    const std::vector<SolidState> solids = solids_.download();
+    for (int s = 0; s < solids_.count(); ++s) {
+        const SolidLoad load = (this->*measureLoads_)(s);
+        auto scaled = [&](const double* a) { return mass * Vec3d{a[0], a[1], a[2]}; };
+        const Vector<real> at = solids[size_t(s)].middle;
+        const std::string& name = scene_.solids[size_t(s)].name;
+        m.solids.push_back({name.empty() ? "solid" + std::to_string(s) : name, Vec3d{at.x, at.y, at.z} + toDouble(scene_.domain.min), scaled(load.pressure), scaled(load.other),
+                            scaled(load.torque)});
+    }
     return m;
 }
 

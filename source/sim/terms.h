@@ -14,7 +14,7 @@
 
 namespace spindrift::LANES {
 
-enum Needs : unsigned { Velocity = 1, InverseDensity = 2, WallVelocity = 4, Pressure = 8 };
+enum Needs : unsigned { Velocity = 1, InverseDensity = 2, WallVelocity = 4, Pressure = 8, OwnVelocity = 16 };
 
 // What terms read of one particle.
 template <class R> struct State { Vector<R> velocity; R pressureTerm, inverseDensity, pressure; };
@@ -31,14 +31,15 @@ template <unsigned needs, class I> HD inline State<Real<I>> loadState(const Part
     return s;
 }
 
-// A boundary particle: its mass in units of m, p / rho^2, and the velocity that makes fluid stick to the wall.
-template <class R> struct Wall { R mass, pressureTerm; Vector<R> velocity; };
+// A boundary particle: its mass in units of m, p / rho^2, the velocity that makes fluid stick to the wall, and the wall's own.
+template <class R> struct Wall { R mass, pressureTerm; Vector<R> velocity, own; };
 
 template <unsigned needs, class I> HD inline Wall<Real<I>> loadWall(const Particles& p, I i) {
     Wall<Real<I>> w;
     w.mass = load(p.mass, i);
     w.pressureTerm = load(p.pressureTerm, i);
     if constexpr (needs & WallVelocity) w.velocity = load(p.velocity, i);
+    if constexpr (needs & OwnVelocity) w.own = ownVelocity(p, i);
     return w;
 }
 
@@ -104,7 +105,7 @@ struct LaminarViscosity {
 // Artificial viscosity, Monaghan 1992, on approach only: sum_j m alpha c h (v.x) / ((d^2 + eta^2) rho) grad W,
 // with the mean of 1/rho in place of one over the mean.
 struct ArtificialViscosity {
-    static constexpr unsigned needs = Velocity | InverseDensity;
+    static constexpr unsigned needs = Velocity | InverseDensity | OwnVelocity;
     static constexpr const char* name = "artificial viscosity";
     static const char* skipped(const Scene& s) {
         if (s.simulation.formulation == Formulation::Classic) return "the classic formulation has none";
@@ -121,7 +122,7 @@ struct ArtificialViscosity {
     }
     template <class R>
     HD static void addWall(const Constants& c, const Pair<R>& p, R g, const State<R>& i, const Wall<R>& b, Acceleration<R>& a) {
-        const R s = approach(c, p, g, i.velocity);
+        const R s = approach(c, p, g, i.velocity - b.own);
         a.other = addScaled(a.other, b.mass * s * (i.inverseDensity + i.inverseDensity), p.r);
     }
 };

@@ -8,6 +8,7 @@
 
 #include "core/lanes.h"
 #include "core/vec.h"
+#include "scene/convex.h"
 #include "sim/step_state.h"
 
 #include <cstdint>
@@ -20,12 +21,14 @@ struct Particles {
     int slots;
     int* id;
     VectorField position;          // m, relative to the domain's lower corner
-    VectorField velocity;          // m/s
+    VectorField velocity;          // m/s; of boundary particles the one that makes fluid stick to them, where it does
     VectorField acceleration;      // m/s^2
     ScalarField density;           // kg/m^3; of boundary particles only where density gradients are wanted
     ScalarField inverseDensity;    // m^3/kg
     ScalarField pressureTerm;      // p / rho^2
     ScalarField mass;              // boundary particles only (Akinci 2012): m_b / m
+    VectorField outward;           // m, boundary particles only: from the nearest point of their surface, where fluid sticks to it
+    VectorField ownVelocity;       // m/s, boundary particles only: of the wall itself, where any moves
     ScalarField densityRate;       // kg/(m^3 s), where density is carried
     VectorField shiftVelocity;     // m/s, where particles are shifted: how much faster than the fluid they move,
     VectorField shiftAcceleration; // m/s^2, and what a particle's velocity changes by for being elsewhere
@@ -104,6 +107,7 @@ struct Constants {
     Vector<real> center;                          // m
     Vector<real> slidesBelow, slidesAbove;        // m: boundary particles below or above these slide with
     Vector<real> slideVelocity;                   // m/s
+    real solidSpeed;                              // m/s, the most that any solid reaches
     Vector<real> low, high;                       // m, the box that positions stay in
     Vector<real> period, inversePeriod;           // m, 1/m, of periodic axes; 0 for the others
     bool periodic;                                // any of them
@@ -113,8 +117,24 @@ struct Constants {
     real stirRadius;
 };
 
+// A solid now. Its shape is convex (scene/convex.h), in its own axes and relative to its middle.
+struct SolidState {
+    Vector<real> home, middle;     // m, relative to the domain's lower corner: at its place in the scene, now
+    Vector<real> velocity, spin;   // m/s, rad/s
+    Vector<real> axis[3];          // its own axes in space
+    int firstKey, endKey;          // of its motion
+    int spinAxis;
+    int planes;
+    Vector<real> normal[Convex::mostPlanes];
+    real offset[Convex::mostPlanes];
+    real radius;
+    Vector<real> across;
+};
+
 struct View {
     Particles fluid, walls;
+    SolidState* solids;
+    int solidCount;
     Neighbourhood fluidNearFluid, wallsNearFluid, fluidNearWalls, wallsNearWalls;
     Grid grid;
     Constants c;
@@ -127,13 +147,13 @@ template <class R> HD inline Vector<R> bodyForce(const Constants& c, Vector<R> x
     return subtractScaled(gravity, R(c.centralPull), x - center);
 }
 
-// From the nearest point of the domain's surface to a boundary particle outside, m.
-template <class R> HD inline Vector<R> outward(const Constants& c, Vector<R> x) {
-    auto beyond = [](R at, real center) LANE_CALL { return at - max(min(at, R(2 * center)), R(0)); };
-    return {beyond(x.x, c.center.x), beyond(x.y, c.center.y), beyond(x.z, c.center.z)};
+// Of a boundary particle's wall itself, m/s.
+template <class I> HD inline Vector<Real<I>> ownVelocity(const Particles& walls, I b) {
+    using R = Real<I>;
+    return walls.ownVelocity.data ? load(walls.ownVelocity, b) : Vector<R>{R(0), R(0), R(0)};
 }
 
-// Of the wall itself at one of its particles, m/s.
+// Of the domain's walls at one of their particles, m/s.
 template <class R> HD inline Vector<R> wallVelocity(const Constants& c, Vector<R> x) {
     const R zero = 0, one = 1;
     auto slides = [&](R at, real below, real above) LANE_CALL {

@@ -132,7 +132,7 @@ TEST(Recordings, NeverGoStale) {
                     cpu->stir(stir), gpu->stir(stir);
                     break;
                 }
-                case 5: gpu->writeVertices({vertices.data()}, ColorBy::Pressure, k % 2); break;
+                case 5: gpu->writeVertices({vertices.data()}, ColorBy::Pressure, k % 2 ? gpu->wallCount() : 0); break;
                 case 6: gpu->resetTimes(); break;
                 case 7: gpu->measure(), gpu->times(); break;
             }

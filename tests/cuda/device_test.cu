@@ -150,8 +150,8 @@ TEST(CudaVertices, DeviceMemoryAndHostGetTheSame) {
     const Scene scene = testScene("ball_drop_small.json");
     const auto simulation = makeCudaSimulation(scene, placeParticles(scene), 0);
     simulation->step(5);
-    for (bool walls : {false, true}) {
-        const size_t n = size_t(simulation->fluidCount()) + (walls ? size_t(simulation->wallCount()) : 0);
+    for (int walls : {0, simulation->wallCount()}) {
+        const size_t n = size_t(simulation->fluidCount() + walls);
         Cuda device(0);
         Buffer<Vertex, Cuda> own(device);
         own.resize(n);

@@ -31,7 +31,7 @@ class ThroughHost final : public Simulation {
 public:
     explicit ThroughHost(Simulation& s) : s_(s) {}
     int cudaDevice() const override { return hostMemory; }
-    Range writeVertices(VertexMemory out, ColorBy by, bool walls) override {
+    Range writeVertices(VertexMemory out, ColorBy by, int walls) override {
         EXPECT_EQ(out.device, hostMemory);
         return s_.writeVertices(out, by, walls);
     }
@@ -40,6 +40,7 @@ public:
     void stir(const Stir& stir) override { s_.stir(stir); }
     int fluidCount() const override { return s_.fluidCount(); }
     int wallCount() const override { return s_.wallCount(); }
+    int solidParticleCount() const override { return s_.solidParticleCount(); }
     Measurement measure() override { return s_.measure(); }
     std::vector<Particle> particles() override { return s_.particles(); }
     Particle particle(int id) override { return s_.particle(id); }

@@ -95,7 +95,7 @@ TEST(ReadScene, NamesPlaceAndRemedyOfEachMistake) {
         {R"({"version": 2, "name": "a", "name": "b"})",
          "the key \"name\" stands twice in one object"},
         {R"({"version": 2, "fluid": {"bodies": 3}})",
-         "fluid.bodies: expected a list of bodies [{...}], found 3"},
+         "fluid.bodies: expected a list of objects [{...}], found 3"},
         {R"({"version": 2, "fluid": {"bodies": [3]}})",
          "fluid.bodies[0]: expected an object {...}, found 3"},
         {R"({"version": 2, "fluid": {"bodies": [{"radius": 1}]}})",

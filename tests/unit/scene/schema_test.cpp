@@ -108,7 +108,9 @@ struct Change {
         if (path != "version") v = v + 1 <= k.max ? v + 1 : v - 1;
     }
     void operator()(const std::string&, bool& v, const Knob&) const { v = !v; }
-    void operator()(const std::string&, std::string& v, const Knob&) const {
+    void operator()(const std::string&, Keyframes& v, const Knob&) const { v = {{0, {1, 2, 3}, 4}, {0.1f, {-1, 0, 0}, 0}}; }
+    void operator()(const std::string& path, std::string& v, const Knob&) const {
+        if (path.ends_with(".motion")) return;   // is read and forgotten
         v += " \"new\" \\ \n\t \xc3\xbc // no comment";
     }
     void operator()(const std::string&, Vec3& v, const Knob&) const {
@@ -129,6 +131,7 @@ TEST(Schema, SaveAndLoadIsTheIdentity) {
     sphere.shape = Shape::Sphere;
     cylinder.shape = Shape::Cylinder;
     scene.fluid.bodies = {Body{}, sphere, cylinder};
+    scene.solids.resize(2);
     visitKnobs(scene, Change{});
     const Scene again = parseScene(writeScene(scene), "text");
     EXPECT_EQ(writeScene(again), writeScene(scene));

@@ -35,7 +35,7 @@ TEST(Vertices, StandAtTheirIdWithTheirValue) {
     const Placement placement = apart();
     const auto simulation = makeSimdSimulation(calm(), placement, 2);
     std::vector<Vertex> vertices(placement.positions.size());
-    simulation->writeVertices({vertices.data()}, ColorBy::Velocity, false);
+    simulation->writeVertices({vertices.data()}, ColorBy::Velocity, 0);
     for (size_t i = 0; i < vertices.size(); ++i) {
         EXPECT_EQ(vertices[i].x, placement.positions[i].x);
         EXPECT_EQ(vertices[i].y, placement.positions[i].y);
@@ -47,11 +47,11 @@ TEST(Vertices, RangeLeavesOutliersOut) {
     Placement placement = apart();
     const auto simulation = makeSimdSimulation(calm(), placement, 2);
     std::vector<Vertex> vertices(placement.positions.size());
-    const Range range = simulation->writeVertices({vertices.data()}, ColorBy::Velocity, false);
+    const Range range = simulation->writeVertices({vertices.data()}, ColorBy::Velocity, 0);
     EXPECT_LT(range.max, 2);
     EXPECT_GE(range.max, 0.99f);
     EXPECT_LT(range.min, 0.1f);
-    const Range plain = simulation->writeVertices({vertices.data()}, ColorBy::Plain, false);
+    const Range plain = simulation->writeVertices({vertices.data()}, ColorBy::Plain, 0);
     EXPECT_EQ(plain.min, 0);
     EXPECT_EQ(plain.max, 0);
 }

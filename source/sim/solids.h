@@ -1,0 +1,308 @@
+// Solids in the fluid: where they are, what their particles know of them, what keeps fluid out of them, and what fluid does to them.
+#if defined(SPINDRIFT_SIM_SOLIDS_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SPINDRIFT_SIM_SOLIDS_H
+#undef SPINDRIFT_SIM_SOLIDS_H
+#else
+#define SPINDRIFT_SIM_SOLIDS_H
+#endif
+
+#include "scene/convex.h"
+#include "scene/motion.h"
+#include "sim/neighbours.h"
+#include "sim/terms.h"
+
+namespace spindrift::LANES {
+
+// From a solid's own axes into space.
+template <class R> HD inline Vector<R> turned(const SolidState& s, Vector<R> a) {
+    auto wide = [](Vector<real> b) LANE_CALL { return Vector<R>{b.x, b.y, b.z}; };
+    return a.x * wide(s.axis[0]) + a.y * wide(s.axis[1]) + a.z * wide(s.axis[2]);
+}
+
+// Where a solid is now and how it moves: on straight lines between its keys. It does not accelerate but for an instant at each key.
+struct MoveSolids {
+    using Index = int;
+    SolidState* solids;
+    const MotionKey* keys;
+    const StepState* state;
+    HD void operator()(int i) const {
+        SolidState& s = solids[i];
+        const double time = state->time;
+        int next = s.firstKey;
+        while (next < s.endKey && keys[next].time <= time) ++next;
+        const bool rests = next == s.firstKey || next == s.endKey;
+        const MotionKey &from = keys[next == s.firstKey ? next : next - 1], &to = keys[next == s.endKey ? next - 1 : next];
+        const double perSecond = rests ? 0 : 1 / (to.time - from.time), share = (time - from.time) * perSecond;
+        auto between = [&](double a, double b) { return a + share * (b - a); };
+        s.middle = s.home + Vector<real>{real(between(from.offset.x, to.offset.x)), real(between(from.offset.y, to.offset.y)),
+                                         real(between(from.offset.z, to.offset.z))};
+        s.velocity = real(perSecond) * Vector<real>{real(to.offset.x - from.offset.x), real(to.offset.y - from.offset.y),
+                                                    real(to.offset.z - from.offset.z)};
+        turn(s, between(from.turn, to.turn), (to.turn - from.turn) * perSecond);
+    }
+    HD static void turn(SolidState& s, double angle, double rate) {
+        const int k = s.spinAxis, y = (k + 1) % 3, z = (k + 2) % 3;
+        const real cosine = real(cos(angle)), sine = real(sin(angle));
+        auto set = [](Vector<real>& v, int component, real value) { (component == 0 ? v.x : component == 1 ? v.y : v.z) = value; };
+        for (int a = 0; a < 3; ++a) s.axis[a] = {0, 0, 0};
+        s.spin = {0, 0, 0};
+        set(s.axis[k], k, 1), set(s.spin, k, real(rate));
+        set(s.axis[y], y, cosine), set(s.axis[y], z, sine);
+        set(s.axis[z], y, -sine), set(s.axis[z], z, cosine);
+    }
+};
+
+// What boundary particles have from the start, in the order of their ids.
+struct WallsAtHome {
+    int firstId;
+    const int* solid;       // -1: of the domain's walls
+    VectorField position;   // m
+    VectorField outward;    // m
+    ScalarField mass;
+};
+
+// Boundary particles go with their solids. Their order is that of the last sort.
+struct PlaceWalls {
+    using Index = int;
+    View v;
+    WallsAtHome home;
+    HD void operator()(int i) const {
+        if (v.walls.id[i] < 0) return;
+        const int k = v.walls.id[i] - home.firstId, solid = home.solid[k];
+        Vector<real> x = load(home.position, k), out = load(home.outward, k), velocity = wallVelocity(v.c, x);
+        if (solid >= 0) {
+            const SolidState& s = v.solids[solid];
+            const Vector<real> arm = turned(s, x - s.home);
+            velocity = s.velocity + cross(s.spin, arm);
+            x = wrapped(s.middle + arm), out = turned(s, out);
+        }
+        store(v.walls.position, i, x);
+        if (v.walls.outward.data) store(v.walls.outward, i, out);
+        if (v.walls.ownVelocity.data) store(v.walls.ownVelocity, i, velocity);
+        if (home.mass.data) store(v.walls.mass, i, load(home.mass, k));
+    }
+    HD Vector<real> wrapped(Vector<real> x) const {
+        const Constants& c = v.c;
+        return {x.x - c.period.x * roundDown(x.x * c.inversePeriod.x), x.y - c.period.y * roundDown(x.y * c.inversePeriod.y),
+                x.z - c.period.z * roundDown(x.z * c.inversePeriod.z)};
+    }
+};
+
+struct KeepWallMass {
+    using Index = int;
+    Particles walls;
+    WallsAtHome home;
+    HD void operator()(int i) const {
+        if (walls.id[i] >= 0) store(home.mass, walls.id[i] - home.firstId, load(walls.mass, i));
+    }
+};
+
+// Who got into a solid is put back on its surface, and bounces as from the domain's box. Boundary particles keep fluid out, but not
+// every drop at every speed.
+struct KeepOutOfSolids {
+    using Index = Quad;
+    using R = Real<Quad>;
+    View v;
+    HD void operator()(Quad i) const {
+        Vector<R> x = load(v.fluid.position, i), u = load(v.fluid.velocity, i);
+        for (int s = 0; s < v.solidCount; ++s) leave(v.solids[s], x, u);
+        store(v.fluid.position, i, x);
+        store(v.fluid.velocity, i, u);
+    }
+    HD void leave(const SolidState& s, Vector<R>& x, Vector<R>& u) const {
+        auto wide = [](Vector<real> b) LANE_CALL { return Vector<R>{b.x, b.y, b.z}; };
+        Vector<R> arm = x - wide(s.middle);
+        if (v.c.periodic)
+            arm = {nearestImage(arm.x, v.c.period.x, v.c.inversePeriod.x), nearestImage(arm.y, v.c.period.y, v.c.inversePeriod.y),
+                   nearestImage(arm.z, v.c.period.z, v.c.inversePeriod.z)};
+        Vector<R> n{0, 0, 0};
+        const R depth = R(0) - nearest(s, {dot(arm, wide(s.axis[0])), dot(arm, wide(s.axis[1])), dot(arm, wide(s.axis[2]))}, n);
+        const auto inside = depth > R(0);
+        n = turned(s, n);
+        const Vector<R> relative = u - wide(s.velocity) - cross(wide(s.spin), arm);
+        const R into = min(dot(relative, n), R(0)), one = R(1), zero = R(0);
+        const Vector<R> along = relative - into * n;
+        const R friction = select(inside, R(v.c.friction), zero) * select(into < zero, one, zero);
+        x = addScaled(x, select(inside, depth, zero), n);
+        u = addScaled(u, select(inside, R(-1 - v.c.restitution) * into, zero), n);
+        u = subtractScaled(u, friction, along);
+    }
+    // Convex::nearest, for lanes.
+    HD static R nearest(const SolidState& s, Vector<R> p, Vector<R>& n) {
+        R most = real(-1e30);
+        auto take = [&](R distance, Vector<R> normal) LANE_CALL {
+            const auto nearer = distance > most;
+            n = {select(nearer, normal.x, n.x), select(nearer, normal.y, n.y), select(nearer, normal.z, n.z)};
+            most = max(most, distance);
+        };
+        for (int k = 0; k < s.planes; ++k) {
+            const Vector<R> normal{s.normal[k].x, s.normal[k].y, s.normal[k].z};
+            take(dot(normal, p) - R(s.offset[k]), normal);
+        }
+        if (s.radius > 0) {
+            const Vector<R> d{R(s.across.x) * p.x, R(s.across.y) * p.y, R(s.across.z) * p.z};
+            const R far = squareRoot(max(dot(d, d), R(real(1e-30))));
+            take(far - R(s.radius), (R(1) / far) * d);
+        }
+        return most;
+    }
+};
+
+// What fluid does to boundary particles: the terms of ComputeForces with their signs changed. m/s^2 per fluid particle's mass; of pressure, and
+// of the others.
+template <class Kernel, class Terms> struct ComputeWallLoads;
+template <class Kernel, class... Terms> struct ComputeWallLoads<Kernel, TermList<Terms...>> {
+    using Index = Group;
+    using R = Real<Group>;
+    static constexpr unsigned needs = TermList<Terms...>::needs;
+    View v;
+    VectorField pressure, other;
+    HD void operator()(Group b) const {
+        const Wall<R> wall = loadWall<needs>(v.walls, b);
+        Acceleration<R> a{};
+        forNeighbours<Lists::All>(v, v.fluidNearWalls, b, load(v.walls.position, b), [&](auto p, Four j) LANE_CALL {
+            p.r = R(-1) * p.r;
+            const State<R> fluid = loadState<needs>(v.fluid, j);
+            (Terms::addWall(v.c, p, Kernel::g(p.q), fluid, wall, a), ...);
+        });
+        const R scale = -v.c.gradientScale;
+        store(pressure, b, scale * total(a.pressure));
+        store(other, b, scale * total(a.other));
+    }
+};
+
+// Sums over the particles of one solid; times a fluid particle's mass they are N and N m, about its middle.
+struct SolidLoad {
+    double pressure[3] = {0, 0, 0}, other[3] = {0, 0, 0}, torque[3] = {0, 0, 0};
+    HD_OUT void add(const SolidLoad& o) {
+        for (int k = 0; k < 3; ++k) pressure[k] += o.pressure[k], other[k] += o.other[k], torque[k] += o.torque[k];
+    }
+};
+struct SumSolidLoad {
+    Particles walls;
+    VectorField pressure, other;
+    WallsAtHome home;
+    const SolidState* solids;
+    int solid;
+    HD void addTo(SolidLoad& sum, int i) const {
+        if (walls.id[i] < 0 || home.solid[walls.id[i] - home.firstId] != solid) return;
+        const Vector<real> p = load(pressure, i), o = load(other, i);
+        const Vector<real> torque = cross(load(walls.position, i) - solids[solid].middle, p + o);
+        sum.add({{p.x, p.y, p.z}, {o.x, o.y, o.z}, {torque.x, torque.y, torque.z}});
+    }
+};
+
+// A solid at its place in the scene, before it has moved.
+inline SolidState solidAtHome(const Scene& scene, const Solid& solid) {
+    auto real3 = [](Vec3d a) { return Vector<real>{real(a.x), real(a.y), real(a.z)}; };
+    const Convex shape = convexOf(solid, scene.simulation.dimensions);
+    Vec3d middle = shape.middle - toDouble(scene.domain.min);
+    if (scene.simulation.dimensions == 2) middle.z = 0.5 * double(scene.domain.max.z - scene.domain.min.z);
+    SolidState s{};
+    s.home = s.middle = real3(middle);
+    s.axis[0] = {1, 0, 0}, s.axis[1] = {0, 1, 0}, s.axis[2] = {0, 0, 1};
+    s.spinAxis = int(solid.spinAxis);
+    s.planes = shape.planes;
+    for (int k = 0; k < shape.planes; ++k) s.normal[k] = real3(shape.normal[k]), s.offset[k] = real(shape.offset[k]);
+    s.radius = real(shape.radius), s.across = real3(shape.across);
+    return s;
+}
+
+// Owns the solids and what their particles and those of the domain's walls have from the start.
+template <class Device> class Solids {
+public:
+    explicit Solids(Device& device) : device_(device) {}
+
+    // `walls` as in Placement, ids from firstId on.
+    void place(const Scene& scene, const std::vector<Vec3>& walls, const std::vector<int>& sizes, int firstId) {
+        std::vector<SolidState> states;
+        std::vector<MotionKey> keys;
+        for (const Solid& solid : scene.solids) {
+            states.push_back(solidAtHome(scene, solid));
+            states.back().firstKey = int(keys.size());
+            for (const MotionKey& key : motionOf(solid)) keys.push_back(key);
+            states.back().endKey = int(keys.size());
+            speed_ = std::max(speed_, spindrift::largestSpeed(solid));
+        }
+        count_ = int(states.size()), firstId_ = firstId;
+        moves_ = std::any_of(scene.solids.begin(), scene.solids.end(), [](const Solid& s) { return s.moves(); });
+        fill(states_, states), fill(keys_, keys);
+        placeParticles(scene, walls, sizes);
+    }
+    int count() const { return count_; }
+    bool moves() const { return moves_; }
+    double largestSpeed() const { return speed_; }
+    SolidState* data() { return states_.data(); }
+
+    void move(const StepState* state) { device_.forEach(count_, MoveSolids{states_.data(), keys_.data(), state}); }
+    void placeWalls(const View& v) { device_.forEach(v.walls.slots, PlaceWalls{v, home()}); }
+    // Masses follow from neighbours at the start; a solid that comes near a wall later doesn't change them.
+    void keepMasses(const Particles& walls) {
+        mass_.resize(solidOf_.size());
+        device_.forEach(walls.slots, KeepWallMass{walls, home()});
+    }
+    // Of particles that stay where they are nothing is needed any more once they are placed.
+    void forget() { position_.release(), outward_.release(); }
+
+    template <class Pass> SolidLoad load(const View& v, int solid, bool first) {
+        if (first) {
+            for (auto* field : {&pressureLoad_, &otherLoad_}) field->resize(vectorSize(v.walls.slots));
+            device_.forEach(v.walls.slots, Pass{v, {pressureLoad_.data()}, {otherLoad_.data()}});
+        }
+        return device_.template sum<SolidLoad>(
+            v.walls.slots, SumSolidLoad{v.walls, {pressureLoad_.data()}, {otherLoad_.data()}, home(), states_.data(), solid});
+    }
+    std::vector<SolidState> download() {
+        std::vector<SolidState> host(count_);
+        device_.download(host.data(), states_.data(), host.size());
+        return host;
+    }
+
+private:
+    WallsAtHome home() {
+        return {firstId_, solidOf_.data(), {position_.data()}, {outward_.data()}, {mass_.data()}};
+    }
+    template <class T> void fill(Buffer<T, Device>& buffer, const std::vector<T>& host) {
+        buffer.resize(host.size());
+        device_.upload(buffer.data(), host.data(), host.size());
+    }
+    void placeParticles(const Scene& scene, const std::vector<Vec3>& walls, const std::vector<int>& sizes) {
+        const size_t slots = (walls.size() + clusterSize - 1) / clusterSize * clusterSize;
+        std::vector<int> solidOf(slots, -1);
+        size_t end = 0;
+        for (size_t s = 0; s < sizes.size(); ++s) std::fill_n(solidOf.begin() + long(std::exchange(end, end + size_t(sizes[s]))), sizes[s], int(s));
+        std::vector<real> x(vectorSize(int(slots))), out(vectorSize(int(slots)));
+        for (size_t i = 0; i < walls.size(); ++i) {
+            const Vec3d outward = outwardAt(scene, walls[i], solidOf[i]);
+            for (int k = 0; k < 3; ++k) x[vectorOffset(int(i), k)] = walls[i][k], out[vectorOffset(int(i), k)] = real(outward[k]);
+        }
+        fill(solidOf_, solidOf), fill(position_, x), fill(outward_, out);
+    }
+    // From the nearest point of the surface to a particle behind it, m.
+    static Vec3d outwardAt(const Scene& scene, Vec3 x, int solid) {
+        const Vec3 size = scene.domain.max - scene.domain.min;
+        if (solid < 0) {
+            Vec3 out;
+            for (int k = 0; k < 3; ++k) out[k] = x[k] - std::max(std::min(x[k], size[k]), 0.0f);
+            return toDouble(out);
+        }
+        const Convex shape = convexOf(scene.solids[size_t(solid)], scene.simulation.dimensions);
+        Vec3d p = toDouble(x) + toDouble(scene.domain.min) - shape.middle;
+        if (scene.simulation.dimensions == 2) p.z = 0;
+        const Convex::Nearest nearest = shape.nearest(p);
+        return nearest.distance * nearest.normal;
+    }
+
+    Device& device_;
+    int count_ = 0, firstId_ = 0;
+    bool moves_ = false;
+    double speed_ = 0;   // m/s
+    Buffer<SolidState, Device> states_{device_};
+    Buffer<MotionKey, Device> keys_{device_};
+    Buffer<int, Device> solidOf_{device_};
+    Buffer<real, Device> position_{device_}, outward_{device_}, mass_{device_}, pressureLoad_{device_}, otherLoad_{device_};
+};
+
+}  // namespace spindrift::LANES
+
+#endif
