@@ -201,12 +201,12 @@ private:
     double reach_;   // m
 };
 
-// The solids, for what is nearer to one than fluid may be: half a spacing is where a lattice that ends at its surface has particles, a bit less lets
-// lattices that don't end there fill the space in the mean.
+// The solids, with a thin skin in which no fluid starts. Lattices that don't end at the surface must fill the space in front of it in the mean: a tank with a
+// wedge on its floor, H/dx = 40, has 0.5 % error of pressure with a skin of 0.1 dx, 1.7 % with 0.3 dx.
 class SolidSpace {
 public:
     explicit SolidSpace(const Scene& scene)
-        : dimensions_(scene.simulation.dimensions), least_(0.3 * double(scene.simulation.spacing)), origin_(toDouble(scene.domain.min)) {
+        : dimensions_(scene.simulation.dimensions), least_(0.1 * double(scene.simulation.spacing)), origin_(toDouble(scene.domain.min)) {
         for (const Solid& solid : scene.solids) solids_.push_back(convexOf(solid, dimensions_));
     }
     bool takes(Vec3d p) const {
@@ -287,7 +287,7 @@ Placement placeParticles(const Scene& scene) {
     const SolidSpace solids(scene);
     for (size_t b = 0; b < lattices.size(); ++b) placeBody(scene, lattices, b, solids, jitter, out);
     for (const Solid& solid : scene.solids) {
-        const std::vector<Vec3> points = sampleSolid(scene, solid);
+        const std::vector<Vec3> points = sampleSolid(scene, solid).positions;
         out.walls.insert(out.walls.end(), points.begin(), points.end());
         out.solidSizes.push_back(int(points.size()));
     }

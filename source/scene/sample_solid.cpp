@@ -49,46 +49,66 @@ std::vector<Point2> triangle(double b, double h, double depth, double dx) {
     return ring;
 }
 
+// Relative to the solid's middle; volumes in units of spacing^dimensions.
+struct Points {
+    std::vector<Vec3d> at;
+    std::vector<double> volumes;
+    void add(Vec3d p, double volume) { at.push_back(p), volumes.push_back(volume); }
+};
+
 // Evenly on a sphere along a spiral (Fibonacci lattice, Swinbank & Purser 2006).
-void addSphere(double radius, double dx, std::vector<Vec3d>& out) {
-    const int n = std::max(1, int(std::round(4 * pi * radius * radius / (dx * dx))));
-    const double golden = pi * (3 - std::sqrt(5.0));
+void addSphere(double radius, double dx, Points& out) {
+    const double area = 4 * pi * radius * radius / (dx * dx), golden = pi * (3 - std::sqrt(5.0));
+    const int n = std::max(1, int(std::round(area)));
     for (int i = 0; i < n; ++i) {
         const double y = 1 - (2 * i + 1.0) / n, across = std::sqrt(1 - y * y);
-        out.push_back(radius * Vec3d{across * std::cos(golden * i), y, across * std::sin(golden * i)});
+        out.add(radius * Vec3d{across * std::cos(golden * i), y, across * std::sin(golden * i)}, (area + pi / 3) / n);
     }
 }
 
 // A lattice that fits the block, without its inside.
-void addBlock(const Scene& scene, Vec3d half, int layers, std::vector<Vec3d>& out) {
+void addBlock(const Scene& scene, Vec3d half, int layers, Points& out) {
     const double dx = scene.simulation.spacing;
     const bool flat = scene.simulation.dimensions == 2;
     const std::vector<double> x = centres(half.x, dx), y = centres(half.y, dx), z = flat ? std::vector<double>{0} : centres(half.z, dx);
+    auto step = [&](double halfSide, size_t n) { return 2 * halfSide / (double(n) * dx); };
+    const double volume = step(half.x, x.size()) * step(half.y, y.size()) * (flat ? 1 : step(half.z, z.size()));
     for (size_t k = 0; k < z.size(); ++k)
         for (size_t j = 0; j < y.size(); ++j)
             for (size_t i = 0; i < x.size(); ++i)
                 if (std::min({depthOf(i, x.size()), depthOf(j, y.size()), flat ? layers : depthOf(k, z.size())}) < layers)
-                    out.push_back({x[i], y[j], z[k]});
+                    out.add({x[i], y[j], z[k]}, volume);
+}
+
+double lengthOf(const std::vector<Point2>& ring) {
+    double sum = 0;
+    for (size_t i = 0; i < ring.size(); ++i) {
+        const Point2 a = ring[i], b = ring[(i + 1) % ring.size()];
+        sum += std::hypot(b.x - a.x, b.y - a.y);
+    }
+    return sum;
 }
 
 // Rings in planes along an axis; planes near the ends are filled.
-void addPrism(const Scene& scene, const Solid& solid, int layers, std::vector<Vec3d>& out) {
+void addPrism(const Scene& scene, const Solid& solid, int layers, Points& out) {
     const double dx = scene.simulation.spacing;
     const Vec3d half = halfExtent(solid);
     const bool flat = scene.simulation.dimensions == 2, round = solid.shape != Shape::Wedge;
     const int axis = flat || !round ? 2 : int(solid.axis);
     const std::vector<double> planes = flat ? std::vector<double>{0} : centres(half[axis], dx);
+    const double thickness = flat ? 1 : 2 * half[axis] / (double(planes.size()) * dx);
     for (size_t k = 0; k < planes.size(); ++k) {
         const bool filled = !flat && depthOf(k, planes.size()) < layers;
         for (int layer = 0; filled || layer < layers; ++layer) {
-            const double depth = (layer + 0.5) * dx;
-            if (round && depth > double(solid.radius)) break;
-            const std::vector<Point2> ring = round ? circle(solid.radius - depth, dx) : triangle(half.x, half.y, depth, dx);
+            const double depth = (layer + 0.5) * dx, radius = solid.radius - depth;
+            if (round && radius < 0) break;
+            const std::vector<Point2> ring = round ? circle(radius, dx) : triangle(half.x, half.y, depth, dx);
             if (ring.empty()) break;
+            const double around = round ? std::max(2 * pi * radius, dx) : lengthOf(ring);
             for (const Point2& p : ring) {
                 Vec3d at;
                 at[axis] = planes[k], at[(axis + 1) % 3] = p.x, at[(axis + 2) % 3] = p.y;
-                out.push_back(at);
+                out.add(at, thickness * around / (dx * double(ring.size())));
             }
         }
     }
@@ -98,19 +118,27 @@ void addPrism(const Scene& scene, const Solid& solid, int layers, std::vector<Ve
 
 int boundaryLayers(const Scene& scene) { return std::max(1, int(std::ceil(scene.simulation.support)) - 1); }
 
-std::vector<Vec3> sampleSolid(const Scene& scene, const Solid& solid) {
+SolidSample sampleSolid(const Scene& scene, const Solid& solid) {
     const int layers = boundaryLayers(scene);
     const double dx = scene.simulation.spacing;
     const bool flat = scene.simulation.dimensions == 2;
-    std::vector<Vec3d> points;
+    Points points;
     if (solid.shape == Shape::Block) addBlock(scene, halfExtent(solid), layers, points);
     else if (solid.shape == Shape::Sphere && !flat)
         for (int k = 0; k < layers && (k + 0.5) * dx < double(solid.radius); ++k) addSphere(solid.radius - (k + 0.5) * dx, dx, points);
     else addPrism(scene, solid, layers, points);
     Vec3d middle = convexOf(solid, 3).middle - toDouble(scene.domain.min);
     if (flat) middle.z = 0.5 * (toDouble(scene.domain.max) - toDouble(scene.domain.min)).z;
-    std::vector<Vec3> out;
-    for (const Vec3d& p : points) out.push_back(toFloat(middle + p));
+    const Vec3d size = toDouble(scene.domain.max) - toDouble(scene.domain.min);
+    auto seen = [&](Vec3d p) {   // by any fluid, ever
+        for (int k = 0; k < scene.simulation.dimensions; ++k)
+            if (std::max(-p[k], p[k] - size[k]) > double(supportRadius(scene))) return solid.moves();
+        return true;
+    };
+    SolidSample out;
+    for (size_t i = 0; i < points.at.size(); ++i)
+        if (const Vec3d p = middle + points.at[i]; seen(p))
+            out.positions.push_back(toFloat(p)), out.volumes.push_back(float(points.volumes[i]));
     return out;
 }
 

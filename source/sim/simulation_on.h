@@ -398,6 +398,7 @@ template <class Device> Measurement SimulationOn<Device>::measure() {
     m.maxDensityError = t.maxDensity / rho0 - 1;
     m.maxSpeed = std::sqrt(t.maxSpeed2);
     m.finite = t.notFinite == 0;
+    if (solids_.moves()) moveSolids();   // to where the fluid is since the last step
     const std::vector<SolidState> solids = solids_.download();
     for (int s = 0; s < solids_.count(); ++s) {
         const SolidLoad load = (this->*measureLoads_)(s);

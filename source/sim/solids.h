@@ -6,8 +6,10 @@
 #define SPINDRIFT_SIM_SOLIDS_H
 #endif
 
+#include "core/error.h"
 #include "scene/convex.h"
 #include "scene/motion.h"
+#include "scene/sample_solid.h"
 #include "sim/neighbours.h"
 #include "sim/terms.h"
 
@@ -58,7 +60,7 @@ struct WallsAtHome {
     const int* solid;       // -1: of the domain's walls
     VectorField position;   // m
     VectorField outward;    // m
-    ScalarField mass;
+    ScalarField mass;       // 0: follows from neighbours
 };
 
 // Boundary particles go with their solids. Their order is that of the last sort.
@@ -79,7 +81,7 @@ struct PlaceWalls {
         store(v.walls.position, i, x);
         if (v.walls.outward.data) store(v.walls.outward, i, out);
         if (v.walls.ownVelocity.data) store(v.walls.ownVelocity, i, velocity);
-        if (home.mass.data) store(v.walls.mass, i, load(home.mass, k));
+        if (const real mass = load(home.mass, k); mass > 0) store(v.walls.mass, i, mass);
     }
     HD Vector<real> wrapped(Vector<real> x) const {
         const Constants& c = v.c;
@@ -88,12 +90,15 @@ struct PlaceWalls {
     }
 };
 
+// Masses that follow from neighbours do so at the start; a solid that comes near a wall later doesn't change them.
 struct KeepWallMass {
     using Index = int;
     Particles walls;
     WallsAtHome home;
     HD void operator()(int i) const {
-        if (walls.id[i] >= 0) store(home.mass, walls.id[i] - home.firstId, load(walls.mass, i));
+        if (walls.id[i] < 0) return;
+        const int k = walls.id[i] - home.firstId;
+        if (load(home.mass, k) == 0) store(home.mass, k, load(walls.mass, i));
     }
 };
 
@@ -236,13 +241,9 @@ public:
 
     void move(const StepState* state) { device_.forEach(count_, MoveSolids{states_.data(), keys_.data(), state}); }
     void placeWalls(const View& v) { device_.forEach(v.walls.slots, PlaceWalls{v, home()}); }
-    // Masses follow from neighbours at the start; a solid that comes near a wall later doesn't change them.
-    void keepMasses(const Particles& walls) {
-        mass_.resize(solidOf_.size());
-        device_.forEach(walls.slots, KeepWallMass{walls, home()});
-    }
+    void keepMasses(const Particles& walls) { device_.forEach(walls.slots, KeepWallMass{walls, home()}); }
     // Of particles that stay where they are nothing is needed any more once they are placed.
-    void forget() { position_.release(), outward_.release(); }
+    void forget() { position_.release(), outward_.release(), mass_.release(); }
 
     template <class Pass> SolidLoad load(const View& v, int solid, bool first) {
         if (first) {
@@ -269,14 +270,22 @@ private:
     void placeParticles(const Scene& scene, const std::vector<Vec3>& walls, const std::vector<int>& sizes) {
         const size_t slots = (walls.size() + clusterSize - 1) / clusterSize * clusterSize;
         std::vector<int> solidOf(slots, -1);
+        std::vector<real> mass(slots);
         size_t end = 0;
-        for (size_t s = 0; s < sizes.size(); ++s) std::fill_n(solidOf.begin() + long(std::exchange(end, end + size_t(sizes[s]))), sizes[s], int(s));
+        for (size_t s = 0; s < scene.solids.size(); ++s) {
+            const std::vector<float> volumes = sampleSolid(scene, scene.solids[s]).volumes;
+            if (sizes.size() <= s || volumes.size() != size_t(sizes[s]))
+                throw Error(Exit::Scene, "solids: the particles of this run are of another version of the program; start the scene again");
+            std::copy(volumes.begin(), volumes.end(), mass.begin() + long(end));
+            std::fill_n(solidOf.begin() + long(end), sizes[s], int(s));
+            end += volumes.size();
+        }
         std::vector<real> x(vectorSize(int(slots))), out(vectorSize(int(slots)));
         for (size_t i = 0; i < walls.size(); ++i) {
             const Vec3d outward = outwardAt(scene, walls[i], solidOf[i]);
             for (int k = 0; k < 3; ++k) x[vectorOffset(int(i), k)] = walls[i][k], out[vectorOffset(int(i), k)] = real(outward[k]);
         }
-        fill(solidOf_, solidOf), fill(position_, x), fill(outward_, out);
+        fill(solidOf_, solidOf), fill(position_, x), fill(outward_, out), fill(mass_, mass);
     }
     // From the nearest point of the surface to a particle behind it, m.
     static Vec3d outwardAt(const Scene& scene, Vec3 x, int solid) {

@@ -36,6 +36,15 @@ TEST_F(Restart, DensityThatIsCarriedGoesOnToo) {
     EXPECT_EQ(read("rest.h5").state.densities.size(), 2500u);
 }
 
+TEST_F(Restart, SolidsGoOnFromWhereTheyAre) {
+    const std::string run = "test/solids_small --headless --backend cpu --quiet --set output.checkpoint_every=0.05 ";
+    ASSERT_EQ(call(run + "--time 0.15 --checkpoint whole.h5").code, 0);
+    ASSERT_EQ(call(run + "--time 0.05 --checkpoint half.h5").code, 0);
+    ASSERT_EQ(call("half.h5 --headless --quiet --threads 1 --time 0.15 --checkpoint rest.h5").code, 0);
+    expectSame(read("whole.h5"), read("rest.h5"));
+    EXPECT_EQ(read("rest.h5").state.particles.solidSizes.size(), 3u);
+}
+
 TEST_F(Restart, LiveKnobsMayChangeOthersNot) {
     ASSERT_EQ(call(Run + "--steps 5 --checkpoint a.h5").code, 0);
     EXPECT_EQ(call("a.h5 --headless --quiet --steps 2 --set fluid.viscosity=0.2").code, 0);

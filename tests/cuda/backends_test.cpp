@@ -12,7 +12,7 @@ namespace {
 const char* const Scenes[] = {"1.json", "2.json", "3.json", "dam_break.json", "double_dam_break.json", "ball_drop.json",
                               "pool_drop.json", "still_pool.json", "poiseuille.json", "test/dam_break_small.json",
                               "test/historical_small.json", "validation/hydrostatic.json", "validation/cavity.json",
-                              "validation/taylor_green.json", "validation/drop.json"};
+                              "validation/taylor_green.json", "validation/drop.json", "test/solids_small.json"};
 
 std::unique_ptr<Simulation> onCpu(const Scene& s, const RunState& from) { return makeSimdSimulation(s, from, 2); }
 std::unique_ptr<Simulation> onGpu(const Scene& s, const RunState& from) { return makeCudaSimulation(s, from, 0); }

@@ -34,7 +34,7 @@ TEST_P(Determinism, SameBitsForOneTwoAndThreeThreads) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Determinism,
                          testing::Values("test/dam_break_small.json", "test/ball_drop_small.json", "test/historical_small.json",
-                                         "validation/hydrostatic.json", "validation/cavity.json"));
+                                         "validation/hydrostatic.json", "validation/cavity.json", "test/solids_small.json"));
 
 }  // namespace
 }  // namespace spindrift
