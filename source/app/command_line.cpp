@@ -39,6 +39,7 @@ constexpr Shortcut Shortcuts[] = {
     {"--fps", "output.fps", "RATE", "frames and rows a second of simulated time"},
     {"--csv", "output.csv", "FILE", "time series as CSV, - = standard output"},
     {"--json", "output.json", "FILE", "time series as JSON, - = standard output"},
+    {"--hdf5", "output.hdf5", "FILE", "time series as HDF5"},
     {"--checkpoint", "output.checkpoint", "FILE", "writes a file from which the run can go on"},
     {"--backend", "compute.backend", "NAME", "auto, cpu or cuda"},
     {"--threads", "compute.threads", "N", "CPU threads; all cores without it"},
@@ -116,7 +117,7 @@ int runScene(const RunOptions& options) {
 #ifdef SPINDRIFT_WINDOW
     if (!scene.output.headless) {
         const Output& output = scene.output;
-        for (const std::string& wanted : {output.screenshot, output.frames, output.csv, output.json, output.checkpoint})
+        for (const std::string& wanted : {output.screenshot, output.frames, output.csv, output.json, output.hdf5, output.checkpoint})
             if (!wanted.empty())
                 fmt::print(stderr, "spindrift: {}: not written by the window; add --headless\n",
                            wanted);

@@ -6,6 +6,7 @@
 #include "measure/checkpoint.h"
 #include "measure/health.h"
 #include "measure/output_file.h"
+#include "measure/probes.h"
 #include "measure/time_series.h"
 #include "render/egl_context.h"
 
@@ -55,7 +56,7 @@ void requireOutputs(const Output& output) {
             Exit::Output,
             "output.csv and output.json both want standard output; give one of them a file");
     std::set<std::string> files;
-    for (const std::string& file : {output.screenshot, output.csv, output.json, output.checkpoint}) {
+    for (const std::string& file : {output.screenshot, output.csv, output.json, output.hdf5, output.checkpoint}) {
         if (file.empty() || file == "-") continue;
         requireWritable(file);
         if (!files.insert(file).second)
@@ -81,7 +82,7 @@ struct Pictures {
 class HeadlessRun {
 public:
     HeadlessRun(const Start& start, bool quiet)
-        : scene_(start.scene), quiet_(quiet), progress_(!quiet) {
+        : scene_(start.scene), quiet_(quiet), progress_(!quiet), probes_(start.scene), series_(probes_.columns()) {
         if (scene_.compute.steps == 0 && scene_.output.time == 0)
             scene_.compute.steps = DefaultSteps;
         requireOutputs(scene_.output);
@@ -90,7 +91,8 @@ public:
             pictures_.emplace(scene_);
             scene_ = onDrawingDevice(std::move(scene_));
         }
-        sampling_ = !output.frames.empty() || !output.csv.empty() || !output.json.empty();
+        rows_ = !output.csv.empty() || !output.json.empty() || !output.hdf5.empty();
+        sampling_ = rows_ || !output.frames.empty();
         simulation_ = startSimulation(scene_, start.state);
     }
 
@@ -98,7 +100,7 @@ public:
         try {
             now_ = simulation_->measure();
             if (checkpointsByTime()) nextCheckpoint_ = after(now_.time, scene_.output.checkpointEvery);
-            if (sampling_) sample();
+            sample();
             while (!done() && trouble_.empty() && stopSignal == 0) advance();
         } catch (...) {   // a GPU was lost, a disk is full: what was measured until then is kept
             progress_.clear();
@@ -136,7 +138,7 @@ private:
         if (!look) return;
         now_ = simulation_->measure();
         trouble_ = divergence(scene_, now_);
-        if (sampling_ && trouble_.empty() && now_.time >= nextSample_) sample();
+        if (sampling_ && trouble_.empty()) sample();
         if (checkpointsByTime() && trouble_.empty() && now_.time >= nextCheckpoint_) saveCheckpoint();
         if (progress_.due()) progress_.show(share(), describe());
     }
@@ -152,15 +154,19 @@ private:
                            1000 * stepSeconds_ / double(steps_));
     }
 
-    // A row of the series and a frame of the sequence.
+    // A row of the series and a frame of the sequence, if they are due.
     void sample() {
-        addRow();
-        if (!scene_.output.frames.empty()) {
-            const auto file = std::filesystem::path(scene_.output.frames) /
-                              fmt::format("frame_{:05}.png", frames_++);
-            pictures_->save(*simulation_, scene_, file.string());
+        const Output& output = scene_.output;
+        const double frameTime = 1 / double(output.fps);
+        if (rows_ && now_.time >= nextRow_) {
+            addRow();
+            nextRow_ = after(now_.time, output.sampleEvery > 0 ? double(output.sampleEvery) : frameTime);
         }
-        nextSample_ = after(now_.time, 1 / double(scene_.output.fps));
+        if (!output.frames.empty() && now_.time >= nextFrame_) {
+            const auto file = std::filesystem::path(output.frames) / fmt::format("frame_{:05}.png", frames_++);
+            pictures_->save(*simulation_, scene_, file.string());
+            nextFrame_ = after(now_.time, frameTime);
+        }
     }
 
     // Of the multiples of `every` the first one that is still ahead.
@@ -176,7 +182,7 @@ private:
     }
 
     void addRow() {
-        series_.add(now_, simulation_->times());
+        series_.add(now_, simulation_->times(), probes_.any() ? probes_.read(simulation_->particles()) : std::vector<double>());
         simulation_->resetTimes();
         lastRow_ = steps_;
     }
@@ -185,13 +191,14 @@ private:
         const Output& output = scene_.output;
         if (!output.csv.empty()) writeText(output.csv, series_.csv());
         if (!output.json.empty()) writeText(output.json, series_.json());
+        if (!output.hdf5.empty()) series_.writeHdf5(output.hdf5);
     }
 
     void finish() {
         const Output& output = scene_.output;
         now_ = simulation_->measure();
         if (trouble_.empty()) trouble_ = divergence(scene_, now_);
-        if (sampling_ && lastRow_ < steps_) addRow();
+        if (rows_ && lastRow_ < steps_) addRow();
         writeSeries();
         if (!output.checkpoint.empty() && trouble_.empty())
             writeCheckpoint(output.checkpoint, scene_, simulation_->state());
@@ -224,17 +231,18 @@ private:
     }
 
     Scene scene_;
-    bool quiet_, sampling_ = false;
+    bool quiet_, rows_ = false, sampling_ = false;   // of the series; anything by time
     Progress progress_;
     std::optional<Pictures>
         pictures_;  // before the simulation: no display is noticed before work begins
     std::unique_ptr<Simulation> simulation_;
+    Probes probes_;
     TimeSeries series_;
     Measurement now_;
     std::string trouble_;  // why the run stopped early
     int64_t steps_ = 0, lastRow_ = 0;
     int frames_ = 0;
-    double nextSample_ = 0, nextCheckpoint_ = 0;  // s simulated
+    double nextRow_ = 0, nextFrame_ = 0, nextCheckpoint_ = 0;  // s simulated
     double stepSeconds_ = 0;                      // of wall time
     StopSignals signals_;
 };

@@ -1,64 +1,21 @@
 #include "measure/checkpoint.h"
 
 #include "core/error.h"
+#include "core/hdf5_file.h"
 #include "measure/output_file.h"
 #include "scene/json.h"
 
 #include <fmt/format.h>
-#include <hdf5.h>
 
-#include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <utility>
 
 namespace spindrift {
 namespace {
 
+using hdf5::Handle, hdf5::Trouble, hdf5::require;
+
 constexpr const char* Format = "spindrift checkpoint";
 constexpr int64_t Version = 2;   // 2: densities, where they are carried
-
-// What went wrong with HDF5, without the place: the public functions add it.
-struct Trouble { const char* what; };
-
-// Owns an HDF5 identifier.
-class Handle {
-public:
-    Handle(hid_t id, herr_t (*close)(hid_t), const char* what) : id_(id), close_(close) {
-        if (id < 0) throw Trouble{what};
-    }
-    ~Handle() {
-        if (id_ >= 0) close_(id_);
-    }
-    Handle(const Handle&) = delete;
-    Handle& operator=(const Handle&) = delete;
-    operator hid_t() const { return id_; }
-    // Closing a file writes to it: the one place where it matters whether that worked.
-    void close(const char* what) {
-        if (close_(std::exchange(id_, -1)) < 0) throw Trouble{what};
-    }
-
-private:
-    hid_t id_;
-    herr_t (*close_)(hid_t);
-};
-void require(herr_t result, const char* what) {
-    if (result < 0) throw Trouble{what};
-}
-
-// HDF5 writes its errors to standard error by default, and tidies up when the program ends, where it was seen to crash after
-// reading a damaged file; all that is open here is closed here.
-void prepareLibrary() {
-    H5dont_atexit();
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-}
-
-// Without the time of day: the same state gives the same file.
-Handle timelessOptions(hid_t kind, const char* what) {
-    const hid_t options = H5Pcreate(kind);
-    H5Pset_obj_track_times(options, false);
-    return Handle(options, H5Pclose, what);
-}
 
 // --- numbers and texts as attributes of the file ---
 
@@ -79,40 +36,19 @@ std::vector<double> readNumbers(hid_t file, const char* name, size_t count) {
     return values;
 }
 
-// --- arrays, checked by a checksum when they are read ---
+// --- arrays ---
 
-// [rows, columns] of a type, in chunks; HDF5 has no chunks of nothing.
-void writeArray(hid_t file, const char* name, hid_t stored, hid_t native, const void* data, hsize_t rows, hsize_t columns) {
-    const hsize_t size[2] = {rows, columns}, chunk[2] = {std::min<hsize_t>(rows, 1 << 16), columns};
-    Handle space(H5Screate_simple(2, size, nullptr), H5Sclose, name);
-    const Handle options = timelessOptions(H5P_DATASET_CREATE, name);
-    if (rows > 0) {
-        require(H5Pset_chunk(options, 2, chunk), name);
-        require(H5Pset_fletcher32(options), name);
-    }
-    Handle set(H5Dcreate2(file, name, stored, space, H5P_DEFAULT, options, H5P_DEFAULT), H5Dclose, name);
-    if (rows > 0) require(H5Dwrite(set, native, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), name);
-}
+// [rows, columns], one row an element of T.
 template <class T> std::vector<T> readArray(hid_t file, const char* name, hid_t native, hsize_t columns) {
-    Handle set(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose, name);
-    Handle space(H5Dget_space(set), H5Sclose, name);
-    hsize_t size[2] = {0, 0};
-    if (H5Sget_simple_extent_ndims(space) != 2) throw Trouble{name};
-    H5Sget_simple_extent_dims(space, size, nullptr);
-    if (size[1] != columns || size[0] > 1'000'000'000) throw Trouble{name};
-    std::vector<T> values(size[0] * columns / (sizeof(T) / H5Tget_size(native)));
-    if (size[0] > 0) require(H5Dread(set, native, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), name);
+    const hdf5::Array array(file, name, 2);
+    if (array.size[1] != columns) throw Trouble{name};
+    std::vector<T> values(array.size[0] * columns / (sizeof(T) / H5Tget_size(native)));
+    if (!values.empty()) require(H5Dread(array.set, native, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), name);
     return values;
 }
-
 void writeFloats(hid_t file, const char* name, const std::string& unit, const void* data, size_t rows, hsize_t columns) {
-    writeArray(file, name, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, data, rows, columns);
-    Handle set(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose, name);
-    Handle space(H5Screate(H5S_SCALAR), H5Sclose, name);
-    Handle type(H5Tcopy(H5T_C_S1), H5Tclose, name);
-    require(H5Tset_size(type, unit.size()), name);
-    Handle attribute(H5Acreate2(set, "unit", type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, name);
-    require(H5Awrite(attribute, type, unit.data()), name);
+    hdf5::writeArray(file, name, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, data, {rows, columns});
+    hdf5::writeUnit(file, name, unit);
 }
 void writeVectors(hid_t file, const char* name, const std::string& unit, const std::vector<Vec3>& v) {
     writeFloats(file, name, unit, v.data(), v.size(), 3);
@@ -124,7 +60,7 @@ std::vector<Vec3> readVectors(hid_t file, const char* name) {
 
 void writeAll(hid_t file, const Scene& scene, const RunState& s) {
     const std::string text = writeScene(scene);
-    writeArray(file, Format, H5T_STD_U8LE, H5T_NATIVE_UCHAR, text.data(), text.size(), 1);
+    hdf5::writeArray(file, Format, H5T_STD_U8LE, H5T_NATIVE_UCHAR, text.data(), {text.size(), 1});
     writeNumbers(file, "version", {double(Version)});
     writeNumbers(file, "clock", {s.clock.time, s.clock.dt, double(s.clock.steps)});
     writeNumbers(file, "start",
@@ -177,32 +113,16 @@ Checkpoint readAll(hid_t file, const std::string& path) {
 }  // namespace
 
 void writeCheckpoint(const std::string& path, const Scene& scene, const RunState& state) {
-    prepareLibrary();
     replaceFile(path, [&](const std::string& temporary) {
-        try {
-            Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "access");
-            // The newest layout has checksums over everything that isn't data.
-            require(H5Pset_libver_bounds(access, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST), "version");
-            const Handle options = timelessOptions(H5P_FILE_CREATE, "options");
-            Handle file(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, options, access), H5Fclose, "create");
-            writeAll(file, scene, state);
-            file.close("close");
-            return true;
-        } catch (const Trouble&) { return false; }
+        return hdf5::writeFile(temporary, [&](hid_t file) { writeAll(file, scene, state); });
     });
 }
 
-bool isCheckpoint(const std::string& path) {
-    std::ifstream stream(path, std::ios::binary);
-    char start[4] = {};
-    stream.read(start, sizeof start);
-    return std::string(start, sizeof start) == "\x89HDF";
-}
+bool isCheckpoint(const std::string& path) { return hdf5::isFile(path); }
 
 Checkpoint readCheckpoint(const std::string& path) {
-    prepareLibrary();
     try {
-        Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "the file");
+        const Handle file = hdf5::openFile(path);
         if (H5Lexists(file, Format, H5P_DEFAULT) <= 0)
             throw Error(Exit::Scene, path + ": is an HDF5 file, but no checkpoint of Spindrift; give a scene or a checkpoint");
         return readAll(file, path);

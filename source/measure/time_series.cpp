@@ -1,5 +1,9 @@
 #include "measure/time_series.h"
 
+#include "core/error.h"
+#include "core/hdf5_file.h"
+#include "measure/output_file.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,7 +18,7 @@ struct Quantity {
     double (*of)(const Measurement&);
 };
 
-// The columns, in their order; the passes' times, averages of one run, follow them.
+// The first columns, in their order; those of the caller and the passes' times, averages of one run, follow them.
 constexpr Quantity Quantities[] = {
     {"time", "s", [](const Measurement& m) { return m.time; }},
     {"step", "", [](const Measurement& m) { return double(m.steps); }},
@@ -49,13 +53,18 @@ template <class F> void forValues(const Measurement& m, const F& f) {
 
 }  // namespace
 
-void TimeSeries::add(const Measurement& m, const std::vector<PassTime>& passes) {
+TimeSeries::TimeSeries(std::vector<Column> more) : more_(std::move(more)) {}
+
+void TimeSeries::add(const Measurement& m, const std::vector<PassTime>& passes, const std::vector<double>& more) {
+    CHECK(more.size() == more_.size());
     std::vector<double> row;
     const bool first = columns_.empty();
     forValues(m, [&](const std::string& name, const char* unit, double value) {
         if (first) columns_.push_back({name, unit});
         row.push_back(value);
     });
+    if (first) columns_.insert(columns_.end(), more_.begin(), more_.end());
+    row.insert(row.end(), more.begin(), more.end());
     for (const PassTime& pass : passes) {
         const auto named = [&](const Column& c) { return c.name == pass.name; };
         if (std::none_of(columns_.begin(), columns_.end(), named))
@@ -102,6 +111,19 @@ std::string TimeSeries::json() const {
         text += "]";
     }
     return text + "]}\n";
+}
+
+void TimeSeries::writeHdf5(const std::string& path) const {
+    requireWritable(path);
+    replaceFile(path, [&](const std::string& temporary) {
+        return hdf5::writeFile(temporary, [&](hid_t file) {
+            std::vector<double> values(rows_.size());
+            for (size_t i = 0; i < columns_.size(); ++i) {
+                for (size_t r = 0; r < rows_.size(); ++r) values[r] = valueAt(r, i);
+                hdf5::writeNumbers(file, columns_[i].name, columns_[i].unit, values);
+            }
+        });
+    });
 }
 
 }  // namespace spindrift

@@ -2,6 +2,7 @@
 
 #include "measure/exact.h"
 #include "measure/interpolate.h"
+#include "measure/probes.h"
 #include "core/table.h"
 #include "scene/convex.h"
 #include "scene/particles.h"
@@ -308,12 +309,7 @@ void runFront(const Scene& scene, ValidationRun& run, const std::string& data) {
     Curve ours{"front", {}, {}, Curve::Line};
     for (int k = 0; k <= 100; ++k) {
         sim.until(k * 6.0 / 100 / scale);
-        std::vector<double> xs;
-        for (const Particle& p : sim->particles()) xs.push_back(p.position.x);
-        // The last half per cent may be spray.
-        const size_t at = size_t(0.995 * double(xs.size()));
-        std::nth_element(xs.begin(), xs.begin() + long(at), xs.end());
-        ours.x.push_back(sim.time() * scale), ours.y.push_back(xs[at] / a);
+        ours.x.push_back(sim.time() * scale), ours.y.push_back(frontOf(sim->particles(), Axis::X) / a);
     }
     double sum = 0, most = 0;
     // Later the experiment's front thins out and friction holds it back.
@@ -356,19 +352,16 @@ double integral(const std::vector<double>& t, const std::vector<double>& p, doub
 void runImpact(const Scene& scene, ValidationRun& run, const std::string& data) {
     const Table experiment = readTable(data + "/lobovsky2014_H300_pressure.csv"), peaks = readTable(data + "/lobovsky2014_H300_peak_pressures.csv");
     const double H = 0.3, g = -scene.simulation.gravity.y, rho0 = scene.fluid.restDensity, Latest = 4;
-    constexpr double Heights[] = {0.003, 0.015, 0.030}, Diameter = 0.0042;   // m, of the sensors
     constexpr const char* Columns[] = {"S1_3mm", "S2_15mm", "S3_30mm"};
-    std::vector<Vec3d> points;
-    for (double height : Heights)
-        for (int k = -1; k <= 1; ++k) points.push_back({scene.domain.max.x, height + k * Diameter / 3, 0.5 * scene.domain.max.z});
+    const Probes sensors(scene);
+    const size_t sensor[] = {sensors.column("S1.pressure"), sensors.column("S2.pressure"), sensors.column("S3.pressure")};
     Stepping sim(scene, run);
     std::vector<double> t, p[3];
     for (int k = 0; k <= 800; ++k) {
         sim.until(k * Latest / 800 * std::sqrt(H / g));
         t.push_back(sim.time() * std::sqrt(g / H));
-        const auto fields = interpolate(sim->particles(), points, supportRadius(scene), Order::Mean);
-        for (size_t s = 0; s < 3; ++s)
-            p[s].push_back((fields[3 * s].pressure + fields[3 * s + 1].pressure + fields[3 * s + 2].pressure) / 3 / (rho0 * g * H));
+        const std::vector<double> readings = sensors.read(sim->particles());
+        for (size_t s = 0; s < 3; ++s) p[s].push_back(readings[sensor[s]] / (rho0 * g * H));
     }
     const std::vector<double>& te = experiment.at("t_star");
     const double impulse = integral(t, p[0], 2.4, Latest), measured = integral(te, experiment.at(Columns[0]), 2.4, Latest);

@@ -176,6 +176,35 @@ void checkSolid(const Scene& scene, size_t index) {
     checkKeyframes(solid, path);
 }
 
+// Where something reads must be in the domain; in two dimensions z does not matter, and a gauge's own axis never does.
+void requireInside(const Scene& scene, const std::string& path, Vec3 at, int except = -1) {
+    for (int k = 0; k < scene.simulation.dimensions; ++k) {
+        const float low = scene.domain.min[k], high = scene.domain.max[k], tolerance = 1e-5f * (high - low);
+        if (k != except && !(at[k] >= low - tolerance && at[k] <= high + tolerance))
+            refuse(path, fmt::format("{} = {} m is outside the domain's {} to {} m; move it inside", "xyz"[k], at[k], low, high));
+    }
+}
+
+void checkProbe(const Scene& scene, size_t index) {
+    const std::vector<Probe>& probes = scene.output.probes;
+    const Probe& probe = probes[index];
+    const std::string path = fmt::format("output.probes[{}]", index);
+    constexpr const char* Letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+    if (probe.name.empty() || probe.name.find_first_not_of(Letters) != std::string::npos)
+        refuse(path + ".name", fmt::format("\"{}\" can't begin a column's name; use letters, digits, _ and -", probe.name));
+    for (size_t other = 0; other < index; ++other)
+        if (probes[other].name == probe.name)
+            refuse(path + ".name", fmt::format("\"{}\" is the name of output.probes[{}] too; give each its own", probe.name, other));
+    const bool reads = probe.kind == ProbeKind::Height || probe.kind == ProbeKind::Front;
+    if (reads && int(probe.axis) >= scene.simulation.dimensions) refuse(path + ".axis", "there is no z in two dimensions; use x or y");
+    if (probe.kind == ProbeKind::Point) requireInside(scene, path + ".position", probe.position);
+    if (probe.kind == ProbeKind::Height) requireInside(scene, path + ".position", probe.position, int(probe.axis));
+    if (probe.kind == ProbeKind::Line) {
+        requireInside(scene, path + ".from", probe.from);
+        requireInside(scene, path + ".to", probe.to);
+    }
+}
+
 // Bytes of memory that a new program can have. A container may be allowed less than the machine
 // has.
 int64_t availableMemory() {
@@ -256,6 +285,7 @@ void checkScene(const Scene& scene, const std::string& place) {
         checkFills(scene);
         checkMovingFace(scene);
         for (size_t i = 0; i < scene.solids.size(); ++i) checkSolid(scene, i);
+        for (size_t p = 0; p < scene.output.probes.size(); ++p) checkProbe(scene, p);
         if (scene.view.range == RangeMode::Fixed && scene.view.rangeMin >= scene.view.rangeMax)
             refuse("view.range_max",
                    fmt::format("{} is not above view.range_min {}; make it larger",

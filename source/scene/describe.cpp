@@ -47,19 +47,16 @@ Json& parentProperties(Json& root, std::string& path) {
     return (*object)["properties"];
 }
 
-// The schema of a list's members allows the keys of all shapes; the reader is stricter.
+// The schema of a list's members allows the keys of all kinds; the reader is stricter.
 template <class T>
 Json memberSchema() {
     Json member = emptyObject();
-    for (Shape shape : {Shape::Block, Shape::Sphere, Shape::Cylinder, Shape::Wedge}) {
-        T example;
-        example.shape = shape;
+    for (const T& example : oneOfEachKind<T>())
         visitMember(example, "", [&](std::string path, const auto& value, const Knob& knob) {
             Json& property = member["properties"][path.substr(1)];
             property = typeOf(value, knob);
             property["description"] = withUnit(knob);
         });
-    }
     return member;
 }
 
@@ -132,10 +129,8 @@ std::vector<std::pair<std::string, std::string>> restartKnobs(const Scene& scene
 
 std::string knobTable() {
     Scene scene;
-    // A block and a cylinder together have every knob that a shape can have.
     visitLists(scene, [](const char*, auto& list, const char*) {
-        list.resize(2);
-        list[1].shape = Shape::Cylinder;
+        list = oneOfEachKind<typename std::decay_t<decltype(list)>::value_type>();
     });
     std::string table;
     std::vector<std::string> seen;

@@ -24,6 +24,8 @@ enum class Field { Uniform, TaylorGreen, Stretching, Rotation, Shear };
 enum class StartPressure { None, Hydrostatic };
 enum class Face { None, XMin, XMax, YMin, YMax, ZMin, ZMax };
 enum class RangeMode { Frame, Run, Fixed };
+enum class ProbeKind { Point, Line, Height, Front };
+enum class Order { Mean, Linear };
 
 // A block reads min and max, a wedge too: its ridge runs along z, above the middle of its base. A sphere reads center and
 // radius, a cylinder center, radius, height and axis.
@@ -145,6 +147,19 @@ struct View {
     Camera camera;
 };
 
+// A gauge whose readings are columns of the time series. A point reads position and radius, a line from, to and count, a height
+// position and axis, a front axis. Points lie in the particles' layer in two dimensions.
+struct Probe {
+    ProbeKind kind = ProbeKind::Point;
+    std::string name = "probe";                 // begins the columns' names
+    Vec3 position{0, 0, 0};                     // m
+    float radius = 0;                           // m, 0 = a point
+    Vec3 from{0, 0, 0}, to{1, 0, 0};            // m
+    int count = 11;                             // points on a line, both ends among them
+    Axis axis = Axis::Y;                        // along which a height or a front is read
+    Order order = Order::Mean;                  // of the interpolation between particles
+};
+
 struct Output {
     bool headless = false;
     float time = 0;                             // s, 0 = by steps
@@ -154,6 +169,9 @@ struct Output {
     std::string csv, json;                      // time series; "-" = standard output
     std::string checkpoint;                     // HDF5 path: a run that can go on
     float checkpointEvery = 0;                  // s of simulated time, 0 = at the end only
+    std::string hdf5;                           // the time series as an HDF5 file
+    float sampleEvery = 0;                      // s of simulated time between rows of the series, 0 = with the frames, by fps
+    std::vector<Probe> probes;
 };
 
 struct Scene {

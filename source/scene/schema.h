@@ -44,6 +44,9 @@ constexpr auto enumNames(Face) {
 }
 constexpr auto enumNames(RangeMode) { return std::array{"frame", "run", "fixed"}; }
 
+constexpr auto enumNames(ProbeKind) { return std::array{"point", "line", "height", "front"}; }
+constexpr auto enumNames(Order) { return std::array{"mean", "linear"}; }
+
 // Which knobs a shape has depends on which it is; that is visited first, so that a reader has set it before the others are chosen.
 template <class F, class Visitor>
 void visitForm(F& f, const std::string& at, Visitor&& visit) {
@@ -93,12 +96,53 @@ void visitMember(S& s, const std::string& at, Visitor&& visit) {
           Knob{"", 0, 0, "CSV with the keyframes, columns t, x, y, z or t, vx, vy, vz, and turn if it turns", Restart});
 }
 
+template <class P, class Visitor>
+requires std::is_same_v<std::remove_const_t<P>, Probe>
+void visitMember(P& p, const std::string& at, Visitor&& visit) {
+    visit(at + ".kind", p.kind,
+          Knob{"", 0, 0,
+               "point and line: pressure, density and velocity of the fluid there; height: of the water, as a gauge "
+               "along an axis sees it; front: how far 99.5 % of the fluid have come along an axis",
+               Restart});
+    const bool interpolates = p.kind == ProbeKind::Point || p.kind == ProbeKind::Line;
+    visit(at + ".name", p.name,
+          Knob{"", 0, 0, "begins the names of its columns: letters, digits, _ and -", Restart});
+    if (p.kind == ProbeKind::Point || p.kind == ProbeKind::Height)
+        visit(at + ".position", p.position, Knob{"m", -1e4f, 1e4f, "where it is; of a height across its axis", Restart});
+    if (p.kind == ProbeKind::Point)
+        visit(at + ".radius", p.radius,
+              Knob{"m", 0, 1e4f, "of a sensor that sees a mean: of a disc on a face of the domain, elsewhere of a ball", Restart});
+    if (p.kind == ProbeKind::Line) {
+        visit(at + ".from", p.from, Knob{"m", -1e4f, 1e4f, "first point", Restart});
+        visit(at + ".to", p.to, Knob{"m", -1e4f, 1e4f, "last point", Restart});
+        visit(at + ".count", p.count, Knob{"", 2, 10000, "points, evenly spaced", Restart});
+    }
+    if (!interpolates) visit(at + ".axis", p.axis, Knob{"", 0, 0, "direction in which it reads", Restart});
+    if (interpolates)
+        visit(at + ".order", p.order,
+              Knob{"", 0, 0,
+                   "mean: weighted mean of the particles near, never beyond their values: for splashes and impacts; linear: "
+                   "least squares, exact for linear fields up to the wall: for calm fluid",
+                   Restart});
+}
+
 // Calls visit(path, list, what) for each list of objects that a scene has. The members' knobs are visitKnobs'.
 template <class S, class Visitor>
 requires std::is_same_v<std::remove_const_t<S>, Scene>
 void visitLists(S& scene, Visitor&& visit) {
     visit("solids", scene.solids, "obstacles");
     visit("fluid.bodies", scene.fluid.bodies, "bodies of fluid");
+    visit("output.probes", scene.output.probes, "gauges whose readings are columns of the time series");
+}
+
+// One member for each shape, or kind: together they have every knob of their list.
+inline Shape& kindOf(Form& f) { return f.shape; }
+inline ProbeKind& kindOf(Probe& p) { return p.kind; }
+template <class Member> std::vector<Member> oneOfEachKind() {
+    using Kind = std::decay_t<decltype(kindOf(std::declval<Member&>()))>;
+    std::vector<Member> members(enumNames(Kind()).size());
+    for (size_t k = 0; k < members.size(); ++k) kindOf(members[k]) = Kind(k);
+    return members;
 }
 
 namespace schema {
@@ -260,6 +304,9 @@ void visitOutput(S& s, Visitor&& visit) {
           Knob{"", 0, 0, "HDF5 file from which the run can go on, written at its end and when it is stopped", Restart});
     visit("output.checkpoint_every", o.checkpointEvery,
           Knob{"s", 0, 1e6f, "simulated time between checkpoints, 0 = at the end only", Restart});
+    visit("output.hdf5", o.hdf5, Knob{"", 0, 0, "HDF5 time series: a dataset with its unit for each column", Restart});
+    visit("output.sample_every", o.sampleEvery,
+          Knob{"s", 0, 1e6f, "simulated time between rows of the series, for impacts shorter than a frame; 0 = with the frames, by output.fps", Restart});
 }
 
 }  // namespace schema
@@ -277,6 +324,7 @@ void visitKnobs(S& scene, Visitor&& visit) {
     schema::visitMembers(scene.fluid.bodies, "fluid.bodies", visit);
     schema::visitPicture(scene, visit);
     schema::visitOutput(scene, visit);
+    schema::visitMembers(scene.output.probes, "output.probes", visit);
 }
 
 }  // namespace spindrift

@@ -3,6 +3,7 @@
 #include "render/image.h"
 #include "scene/json.h"
 #include "scene/read_knobs.h"
+#include "core/hdf5_file.h"
 #include "shell.h"
 
 #include <algorithm>
@@ -115,6 +116,28 @@ TEST_F(CommandLine, SeriesGoesToStandardOutputAlone) {
     const std::string last =
         outcome.text.substr(outcome.text.rfind('\n', outcome.text.size() - 2) + 1);
     EXPECT_GE(std::stod(last), 0.02);
+}
+
+TEST_F(CommandLine, ProbesAreColumnsInEveryFormat) {
+    const std::string probes = R"( --set 'output.probes=[{"name":"wall","position":[0,0.1,0.3]},{"kind":"height","name":"gauge","position":[0.1,0,0.3]}]')";
+    const Outcome outcome = call("dam_break --headless --backend cpu --quiet --set simulation.spacing=0.04 --steps 30 "
+                                 "--csv run.csv --json run.json --hdf5 run.h5 --set output.sample_every=0.001 --frames frames --size 64x48" + probes);
+    ASSERT_EQ(outcome.code, 0) << outcome.text;
+    const std::string csv = slurp(folder_ / "run.csv");
+    const std::string header = csv.substr(0, csv.find('\n'));
+    EXPECT_NE(header.find("max_speed [m/s],wall.pressure [Pa],wall.density [kg/m^3],wall.velocity_x [m/s],"), std::string::npos) << header;
+    EXPECT_NE(header.find("gauge.height [m],sort [ms]"), std::string::npos) << header;
+    const Json series = parseJson(slurp(folder_ / "run.json"), "series");
+    const hdf5::Handle file = hdf5::openFile((folder_ / "run.h5").string());
+    const std::vector<double> height = hdf5::readNumbers(file, "gauge.height"), time = hdf5::readNumbers(file, "time");
+    ASSERT_EQ(height.size(), series["rows"].size());
+    EXPECT_NEAR(height[0], 0.48, 0.002);
+    EXPECT_GT(hdf5::readNumbers(file, "wall.pressure").back(), 100);
+    for (size_t k = 1; k + 1 < time.size(); ++k) EXPECT_GE(std::floor(time[k] / 0.001 + 1e-6), double(k)) << "a row at each millisecond";
+    EXPECT_GT(time.size(), 10u);
+    size_t frames = 0;
+    for (const std::string& name : files()) frames += name.ends_with(".png");
+    EXPECT_LT(frames, time.size() / 2) << "frames keep their own rate";
 }
 
 TEST_F(CommandLine, WritesWhatWasAskedFor) {

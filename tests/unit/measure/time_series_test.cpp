@@ -1,10 +1,16 @@
 #include "measure/time_series.h"
 
+#include "core/error.h"
+#include "core/hdf5_file.h"
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <filesystem>
 #include <sstream>
+
+#include <unistd.h>
 
 namespace spindrift {
 namespace {
@@ -48,6 +54,39 @@ TEST(TimeSeries, JsonIsValidAndHasNullForNoNumber) {
     EXPECT_EQ(json["rows"][0].size(), json["columns"].size());
     EXPECT_TRUE(json["rows"][1][3].is_null());
     EXPECT_EQ(json["rows"][0][0], 0.1);
+}
+
+TEST(TimeSeries, MoreColumnsStandBeforeThePasses) {
+    TimeSeries series({{"gauge.height", "m"}, {"wall.pressure", "Pa"}});
+    series.add({}, {{"sort", 4, 2}}, {0.25, NAN});
+    const auto lines = linesOf(series.csv());
+    EXPECT_TRUE(lines[0].ends_with("max_speed [m/s],gauge.height [m],wall.pressure [Pa],sort [ms]")) << lines[0];
+    EXPECT_TRUE(lines[1].ends_with(",0.25,nan,2")) << lines[1];
+}
+
+TEST(TimeSeries, Hdf5HasADatasetWithItsUnitForEachColumn) {
+    const std::string path = testing::TempDir() + "spindrift-series-" + std::to_string(getpid()) + ".h5";
+    TimeSeries series(std::vector<Column>{{"gauge.height", "m"}});
+    Measurement m;
+    series.add(m, {}, {1.0 / 3});
+    m.time = 0.5;
+    series.add(m, {{"sort", 4, 2}}, {0.75});
+    series.writeHdf5(path);
+    {
+        const hdf5::Handle file = hdf5::openFile(path);
+        EXPECT_EQ(hdf5::readNumbers(file, "time"), (std::vector<double>{0, 0.5}));
+        EXPECT_EQ(hdf5::readNumbers(file, "gauge.height"), (std::vector<double>{1.0 / 3, 0.75}));
+        EXPECT_EQ(hdf5::readNumbers(file, "sort"), (std::vector<double>{0, 2}));
+        const hdf5::Array height(file, "gauge.height", 1);
+        const hdf5::Handle unit(H5Aopen(height.set, "unit", H5P_DEFAULT), H5Aclose, "unit");
+        const hdf5::Handle type(H5Aget_type(unit), H5Tclose, "type");
+        char text[2] = {};
+        ASSERT_EQ(H5Tget_size(type), 1u);
+        H5Aread(unit, type, text);
+        EXPECT_STREQ(text, "m");
+    }
+    std::filesystem::remove(path);
+    EXPECT_THROW(series.writeHdf5("/nowhere/a.h5"), Error);
 }
 
 }  // namespace

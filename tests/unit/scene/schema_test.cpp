@@ -38,15 +38,12 @@ int knobCount(const Scene& scene) {
     return count;
 }
 
-// Of all shapes together.
+// Of all kinds together.
 template <class Member>
 int memberKnobs() {
     std::set<std::string> names;
-    for (Shape shape : {Shape::Block, Shape::Sphere, Shape::Cylinder, Shape::Wedge}) {
-        Member member;
-        member.shape = shape;
+    for (const Member& member : oneOfEachKind<Member>())
         visitMember(member, "m", [&](const std::string& path, const auto&, const Knob&) { names.insert(path); });
-    }
     return int(names.size());
 }
 
@@ -58,11 +55,13 @@ TEST(Schema, EveryFieldOfASceneHasItsLine) {
                        fieldCount<Compute>() + fieldCount<SimulationKnobs>() +
                        fieldCount<Domain>() + fieldCount<Walls>() + fieldCount<Fluid>() -
                        1 /* bodies */ + fieldCount<TimeKnobs>() + fieldCount<View>() -
-                       1 /* camera */ + fieldCount<Camera>() + fieldCount<Output>();
+                       1 /* camera */ + fieldCount<Camera>() + fieldCount<Output>() -
+                       1 /* probes */;
     EXPECT_EQ(knobCount(scene), fields);
 
     EXPECT_EQ(memberKnobs<Body>(), fieldCount<Form>() + fieldCount<Body>() - 1 /* the base */);
     EXPECT_EQ(memberKnobs<Solid>(), fieldCount<Form>() + fieldCount<Solid>() - 1);
+    EXPECT_EQ(memberKnobs<Probe>(), fieldCount<Probe>());
 }
 
 TEST(Schema, NamesAreUniqueAndSnakeCase) {
@@ -119,7 +118,7 @@ struct Change {
     template <class E>
     requires std::is_enum_v<E>
     void operator()(const std::string& path, E& v, const Knob&) const {
-        if (!path.ends_with("shape")) v = E((int(v) + 1) % int(enumNames(v).size()));
+        if (!path.ends_with("shape") && !path.ends_with("kind")) v = E((int(v) + 1) % int(enumNames(v).size()));
     }
 };
 
@@ -132,6 +131,7 @@ TEST(Schema, SaveAndLoadIsTheIdentity) {
     cylinder.shape = Shape::Cylinder;
     scene.fluid.bodies = {Body{}, sphere, cylinder};
     scene.solids.resize(2);
+    scene.output.probes = oneOfEachKind<Probe>();
     visitKnobs(scene, Change{});
     const Scene again = parseScene(writeScene(scene), "text");
     EXPECT_EQ(writeScene(again), writeScene(scene));

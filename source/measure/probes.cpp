@@ -1,0 +1,180 @@
+#include "measure/probes.h"
+
+#include "core/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace spindrift {
+namespace {
+
+constexpr const char* AxisNames[] = {"x", "y", "z"};
+
+bool flat(const Scene& scene, int axis) { return scene.simulation.dimensions == 2 && axis == 2; }
+
+// The place in the particles' layer in two dimensions.
+Vec3d placed(const Scene& scene, Vec3d at) {
+    if (flat(scene, 2)) at.z = 0.5 * (double(scene.domain.min.z) + double(scene.domain.max.z));
+    return at;
+}
+
+Surroundings surroundings(const Scene& scene, Surroundings::Beyond wall) {
+    Surroundings s{toDouble(scene.domain.min), toDouble(scene.domain.max)};
+    for (int k = 0; k < scene.simulation.dimensions; ++k) s.beyond[k] = scene.domain.periodic(k) ? Surroundings::Again : wall;
+    return s;
+}
+
+// The axis across the wall that a sensor is in, -1 for one in the fluid.
+int faceOf(const Scene& scene, Vec3d at) {
+    const double near = 1e-3 * scene.simulation.spacing;
+    for (int k = 0; k < scene.simulation.dimensions; ++k) {
+        const double low = scene.domain.min[k], high = scene.domain.max[k];
+        if (!scene.domain.periodic(k) && (std::abs(at[k] - low) < near || std::abs(at[k] - high) < near)) return k;
+    }
+    return -1;
+}
+
+// Midpoints of 3 x 3 (x 3) cells of the square or cube around a sensor, those in its disc or ball and in the domain.
+std::vector<Vec3d> sensor(const Scene& scene, Vec3d at, double radius) {
+    if (radius == 0) return {at};
+    std::vector<Vec3d> points;
+    const int across = faceOf(scene, at);
+    auto most = [&](int k) { return k == across || flat(scene, k) ? 0 : 1; };
+    auto inside = [&](Vec3d p) {
+        for (int k = 0; k < 3; ++k)
+            if (most(k) && !scene.domain.periodic(k) && (p[k] < scene.domain.min[k] || p[k] > scene.domain.max[k])) return false;
+        return true;
+    };
+    for (int z = -most(2); z <= most(2); ++z)
+        for (int y = -most(1); y <= most(1); ++y)
+            for (int x = -most(0); x <= most(0); ++x) {
+                const Vec3d offset = (2 * radius / 3) * Vec3d{double(x), double(y), double(z)};
+                if (length(offset) <= radius && inside(at + offset)) points.push_back(at + offset);
+            }
+    return points;
+}
+
+// Wendland C2 with radius 1, without its norm.
+double wendland(double q) { return std::pow(1 - q, 4) * (1 + 4 * q); }
+
+Fields mean(const Fields* f, size_t count) {
+    Fields sum;
+    const double share = 1 / double(count);
+    for (size_t i = 0; i < count; ++i) {
+        sum.velocity = sum.velocity + share * f[i].velocity;
+        sum.pressure += share * f[i].pressure, sum.density += share * f[i].density;
+    }
+    return sum;
+}
+
+}  // namespace
+
+Probes::Probes(const Scene& scene) {
+    for (const Probe& probe : scene.output.probes) {
+        switch (probe.kind) {
+            case ProbeKind::Point:
+            case ProbeKind::Line:
+                readers_.push_back({probe.kind, fielded_.size()});
+                addFielded(scene, probe);
+                break;
+            case ProbeKind::Height:
+                readers_.push_back({probe.kind, gauges_.size()});
+                addGauge(scene, probe);
+                columns_.push_back({probe.name + ".height", "m"});
+                break;
+            case ProbeKind::Front:
+                readers_.push_back({probe.kind, size_t(probe.axis)});
+                columns_.push_back({probe.name + ".front", "m"});
+                break;
+        }
+    }
+}
+
+void Probes::addFielded(const Scene& scene, const Probe& probe) {
+    std::vector<Vec3d> points = sensor(scene, placed(scene, toDouble(probe.position)), probe.radius);
+    const size_t perReading = probe.kind == ProbeKind::Point ? points.size() : 1;
+    if (probe.kind == ProbeKind::Line) {
+        points.clear();
+        const Vec3d from = toDouble(probe.from), way = toDouble(probe.to) - from;
+        for (int k = 0; k < probe.count; ++k) points.push_back(placed(scene, from + (double(k) / (probe.count - 1)) * way));
+    }
+    fielded_.push_back({PointsNear(points, supportRadius(scene), surroundings(scene, Surroundings::Nothing)), probe.order, perReading});
+    for (size_t k = 0; k < points.size() / perReading; ++k) {
+        const std::string name = probe.kind == ProbeKind::Line ? probe.name + "[" + std::to_string(k) + "]" : probe.name;
+        columns_.push_back({name + ".pressure", "Pa"});
+        columns_.push_back({name + ".density", "kg/m^3"});
+        for (const char* axis : AxisNames) columns_.push_back({name + ".velocity_" + axis, "m/s"});
+    }
+}
+
+void Probes::addGauge(const Scene& scene, const Probe& probe) {
+    const int k = int(probe.axis), d = scene.simulation.dimensions;
+    const double R = supportRadius(scene), dx = scene.simulation.spacing, low = scene.domain.min[k], high = scene.domain.max[k];
+    const int count = std::max(int(std::ceil(4 * (high - low) / dx)), 1);
+    std::vector<Vec3d> points;
+    for (int i = 0; i <= count; ++i) {
+        Vec3d at = placed(scene, toDouble(probe.position));
+        at[k] = low + (high - low) * i / count;
+        points.push_back(at);
+    }
+    const double volume = particleMass(scene) / scene.fluid.restDensity / (d == 2 ? dx : 1);
+    const double norm = d == 2 ? 7 / (std::numbers::pi * R * R) : 21 / (2 * std::numbers::pi * R * R * R);
+    gauges_.push_back({PointsNear(points, R, surroundings(scene, Surroundings::Mirror)), low, (high - low) / count, R, volume * norm});
+}
+
+double Probes::heightOf(const Gauge& gauge, const std::vector<Particle>& particles) {
+    std::vector<double> filled(gauge.near.points());
+    for (const Particle& p : particles)
+        gauge.near.visit(p.position, [&](int point, Vec3d, double q) { filled[size_t(point)] += gauge.share * wendland(q); });
+    // Where the share crosses a half, on a straight line between two samples.
+    auto crossing = [&](size_t i) {
+        return gauge.low + gauge.step * (double(i) + (0.5 - filled[i]) / (filled[i + 1] - filled[i]));
+    };
+    double height = gauge.low, begin = 0;
+    for (size_t i = 0; i < filled.size(); ++i) {
+        if (!(filled[i] > 0.5)) continue;
+        const bool onFloor = i == 0;
+        begin = onFloor ? gauge.low : crossing(i - 1);
+        while (i + 1 < filled.size() && filled[i + 1] > 0.5) ++i;
+        const double end = i + 1 < filled.size() ? crossing(i) : gauge.low + gauge.step * double(i);
+        if (onFloor || end - begin >= gauge.thinnest) height = end;
+    }
+    return height;
+}
+
+size_t Probes::column(const std::string& name) const {
+    const auto at = std::find_if(columns_.begin(), columns_.end(), [&](const Column& c) { return c.name == name; });
+    if (at == columns_.end()) throw Error(Exit::Scene, "output.probes: none of them reads " + name + "; add it");
+    return size_t(at - columns_.begin());
+}
+
+std::vector<double> Probes::read(const std::vector<Particle>& particles) const {
+    std::vector<double> values;
+    values.reserve(columns_.size());
+    for (const Reader& reader : readers_) {
+        if (reader.kind == ProbeKind::Front) {
+            values.push_back(frontOf(particles, Axis(reader.index)));
+        } else if (reader.kind == ProbeKind::Height) {
+            values.push_back(heightOf(gauges_[reader.index], particles));
+        } else {
+            const Fielded& probe = fielded_[reader.index];
+            const std::vector<Fields> fields = interpolate(particles, probe.near, probe.order);
+            for (size_t i = 0; i < fields.size(); i += probe.perReading) {
+                const Fields f = mean(&fields[i], probe.perReading);
+                for (double value : {f.pressure, f.density, f.velocity.x, f.velocity.y, f.velocity.z}) values.push_back(value);
+            }
+        }
+    }
+    return values;
+}
+
+double frontOf(const std::vector<Particle>& particles, Axis axis) {
+    std::vector<double> places;
+    for (const Particle& p : particles) places.push_back(p.position[int(axis)]);
+    const size_t at = size_t(0.995 * double(places.size()));
+    std::nth_element(places.begin(), places.begin() + long(at), places.end());
+    return places[at];
+}
+
+}  // namespace spindrift
