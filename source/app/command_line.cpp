@@ -117,7 +117,7 @@ int runScene(const RunOptions& options) {
 #ifdef SPINDRIFT_WINDOW
     if (!scene.output.headless) {
         const Output& output = scene.output;
-        for (const std::string& wanted : {output.screenshot, output.frames, output.csv, output.json, output.hdf5, output.checkpoint})
+        for (const std::string& wanted : {output.screenshot, output.frames, output.csv, output.json, output.hdf5, output.particles, output.checkpoint})
             if (!wanted.empty())
                 fmt::print(stderr, "spindrift: {}: not written by the window; add --headless\n",
                            wanted);

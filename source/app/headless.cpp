@@ -56,7 +56,7 @@ void requireOutputs(const Output& output) {
             Exit::Output,
             "output.csv and output.json both want standard output; give one of them a file");
     std::set<std::string> files;
-    for (const std::string& file : {output.screenshot, output.csv, output.json, output.hdf5, output.checkpoint}) {
+    for (const std::string& file : {output.screenshot, output.csv, output.json, output.hdf5, output.particles, output.checkpoint}) {
         if (file.empty() || file == "-") continue;
         requireWritable(file);
         if (!files.insert(file).second)
@@ -202,6 +202,7 @@ private:
         writeSeries();
         if (!output.checkpoint.empty() && trouble_.empty())
             writeCheckpoint(output.checkpoint, scene_, simulation_->state());
+        if (!output.particles.empty() && trouble_.empty()) saveParticles(output.particles, simulation_->particles());
         if (!output.screenshot.empty()) pictures_->save(*simulation_, scene_, output.screenshot);
         if (!quiet_) summarise();
     }
@@ -224,6 +225,7 @@ private:
         fmt::print(out, "density error  {:.3g} % mean, {:.3g} % largest\n", 100 * now_.densityError,
                    100 * now_.maxDensityError);
         if (!output.checkpoint.empty() && trouble_.empty()) fmt::print(out, "checkpoint     {}\n", output.checkpoint);
+        if (!output.particles.empty() && trouble_.empty()) fmt::print(out, "particles in   {}\n", output.particles);
         if (!output.screenshot.empty())
             fmt::print(out, "picture        {}\n",
                        std::filesystem::absolute(output.screenshot).lexically_normal().string());

@@ -95,7 +95,7 @@ Start chooseStart(const std::string& name, const std::vector<KnobChoice>& choice
     for (const auto& [path, value] : builtFrom(checkpoint.scene))
         if (const auto old = before.find(path); old == before.end() || old->second != value)
             throw Error(Exit::Usage, path + ": can't be changed in a run that has begun; start the scene again");
-    checkScene(checkpoint.scene, name);
+    checkScene(checkpoint.scene, name, countOf(checkpoint.state.particles));
     return {std::move(checkpoint.scene), std::move(checkpoint.state)};
 }
 

@@ -5,58 +5,116 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
-#include <sstream>
 
 namespace spindrift {
 
-static std::vector<std::string> cellsOf(const std::string& line) {
-    std::vector<std::string> cells;
-    std::istringstream stream(line);
-    for (std::string cell; std::getline(stream, cell, ',');) {
-        const size_t begin = cell.find_first_not_of(" \t\r"), end = cell.find_last_not_of(" \t\r");
-        cells.push_back(begin == std::string::npos ? "" : cell.substr(begin, end - begin + 1));
-    }
-    return cells;
+namespace {
+
+std::string trimmed(const std::string& text) {
+    const size_t begin = text.find_first_not_of(" \t\r"), end = text.find_last_not_of(" \t\r");
+    return begin == std::string::npos ? "" : text.substr(begin, end - begin + 1);
 }
 
-static double numberOf(const std::string& cell) {
+std::vector<std::string> cellsOf(const std::string& line) {
+    std::vector<std::string> cells;
+    for (size_t begin = 0;;) {
+        const size_t comma = line.find(',', begin);
+        cells.push_back(trimmed(line.substr(begin, comma - begin)));
+        if (comma == std::string::npos) return cells;
+        begin = comma + 1;
+    }
+}
+
+double numberOf(const std::string& cell) {
     char* end = nullptr;
     const double value = std::strtod(cell.c_str(), &end);
     return !cell.empty() && *end == 0 ? value : std::nan("");
 }
 
-Table readTable(const std::string& path) {
+std::ifstream openTable(const std::string& path) {
+    std::error_code none;
+    if (!std::filesystem::exists(path, none)) throw Error(Exit::Scene, path + ": no such file; check the path");
     std::ifstream stream(path);
-    std::vector<std::string> names;
-    Table table;
-    int number = 0;
-    for (std::string line; std::getline(stream, line);) {
+    if (!stream || std::filesystem::is_directory(path, none))
+        throw Error(Exit::Scene, path + ": can't be read; it is a folder, or its permissions forbid it");
+    return stream;
+}
+
+// The next line that holds cells; false at the end.
+bool nextLine(std::istream& stream, std::string& line, int& number) {
+    while (std::getline(stream, line)) {
         ++number;
+        const size_t begin = line.find_first_not_of(" \t\r");
+        if (begin != std::string::npos && line[begin] != '#') return true;
+    }
+    return false;
+}
+
+std::vector<std::string> namesOf(const std::string& line) {
+    std::vector<std::string> names = cellsOf(line);
+    for (std::string& name : names) name = trimmed(name.substr(0, name.find('[')));
+    return names;
+}
+
+// Mistakes of rows go to `complaints`, when there are such.
+Table read(const std::string& path, std::vector<std::string>* complaints) {
+    std::ifstream stream = openTable(path);
+    Table table;
+    std::string line;
+    int number = 0;
+    if (!nextLine(stream, line, number)) throw Error(Exit::Scene, path + ": is empty; its first line names the columns");
+    const std::vector<std::string> names = namesOf(line);
+    std::vector<std::vector<double>*> columns;
+    for (const std::string& name : names) columns.push_back(&table.columns[name]);
+    if (complaints && table.columns.size() < names.size()) throw Error(Exit::Scene, path + ": names a column twice; remove one");
+    while (nextLine(stream, line, number)) {
         const std::vector<std::string> cells = cellsOf(line);
-        if (cells.empty() || cells[0].starts_with('#') || (cells.size() == 1 && cells[0].empty())) continue;
-        if (names.empty()) {
-            names = cells;
-            continue;
+        auto complain = [&](const std::string& what) {
+            if (complaints) complaints->push_back("line " + std::to_string(number) + ": " + what);
+        };
+        if (cells.size() != names.size())
+            complain(std::to_string(cells.size()) + " values for " + std::to_string(names.size()) + " columns");
+        for (size_t k = 0; k < names.size(); ++k) {
+            const double value = k < cells.size() ? numberOf(cells[k]) : std::nan("");
+            if (k < cells.size() && !std::isfinite(value)) complain(names[k] + " is no number");
+            columns[k]->push_back(value);
         }
-        for (size_t k = 0; k < names.size(); ++k)
-            table.columns[names[k]].push_back(k < cells.size() ? numberOf(cells[k]) : std::nan(""));
         table.lines.push_back(number);
     }
-    if (table.rows() == 0)
-        throw Error(Exit::Scene, path + ": no rows of numbers there; check the path, the first line names the columns");
+    if (table.rows() == 0) throw Error(Exit::Scene, path + ": has no rows of numbers; the first line names the columns");
     return table;
 }
 
+}  // namespace
+
+Table readTable(const std::string& path) { return read(path, nullptr); }
+
 Table readStrictTable(const std::string& path, const std::vector<std::string>& needed) {
-    Table table = readTable(path);
+    std::vector<std::string> complaints;
+    Table table = read(path, &complaints);
     for (const std::string& name : needed)
         if (!table.has(name)) throw Error(Exit::Scene, path + ": has no column " + name + "; its first line names the columns");
-    for (const auto& [name, values] : table.columns)
-        for (size_t i = 0; i < values.size(); ++i)
-            if (!std::isfinite(values[i]))
-                throw Error(Exit::Scene, path + ": line " + std::to_string(table.lines[i]) + ": " + name + " is no number");
+    refuseAny(path, complaints);
     return table;
+}
+
+void refuseAny(const std::string& path, const std::vector<std::string>& complaints) {
+    constexpr size_t Most = 3;
+    std::string text;
+    for (size_t i = 0; i < std::min(Most, complaints.size()); ++i) text += (i ? "; " : "") + complaints[i];
+    if (complaints.size() > Most) text += "; and " + std::to_string(complaints.size() - Most) + " more";
+    if (!text.empty()) throw Error(Exit::Scene, path + ": " + text + "; mend or remove these lines");
+}
+
+int64_t countRows(const std::string& path) {
+    std::ifstream stream = openTable(path);
+    std::string line;
+    int number = 0;
+    int64_t count = -1;   // without the names
+    while (nextLine(stream, line, number)) ++count;
+    return std::max<int64_t>(count, 0);
 }
 
 double valueAt(const std::vector<double>& xs, const std::vector<double>& ys, double x) {

@@ -1,5 +1,6 @@
 #pragma once
-// Tables of numbers: CSV with a line of names, before it lines that start with #.
+// Tables of numbers: CSV with a line of names, a unit behind them if any ("x [m]"); empty lines and those that start with # are skipped.
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -16,8 +17,14 @@ struct Table {
 
 // Throws Error (Scene) when the file is missing or has no rows.
 Table readTable(const std::string& path);
-// The same, from a user's file: each of `needed` must be there and all cells be finite numbers; an error names the line.
+// The same, from a user's file: each of `needed` must be there and all cells be finite numbers; an error names the first lines
+// that are wrong.
 Table readStrictTable(const std::string& path, const std::vector<std::string>& needed);
+// How many rows there are, without reading them. Throws Error (Scene) when the file is missing.
+int64_t countRows(const std::string& path);
+
+// Throws Error (Scene) with the first of these, "line 7: x is no number", and how many more there are; does nothing when there are none.
+void refuseAny(const std::string& path, const std::vector<std::string>& complaints);
 
 // y at x by straight lines between points of increasing x; the ends' values beyond them.
 double valueAt(const std::vector<double>& xs, const std::vector<double>& ys, double x);

@@ -39,7 +39,7 @@ std::string divergence(const Scene& scene, const Measurement& m) {
             fmt::format("a particle moves {:.3g} m in one step, farther than its support radius",
                         m.maxSpeed * m.dt));
     constexpr double MachLimit = 3;
-    if (m.maxSpeed > MachLimit * mostSoundSpeed(scene))
+    if (m.maxSpeed > MachLimit * std::max(mostSoundSpeed(scene), m.soundSpeed))
         return report(fmt::format("a particle at {:.3g} m/s, {:g} times the speed of sound or more",
                                   m.maxSpeed, MachLimit));
     return "";

@@ -1,6 +1,7 @@
 #include "measure/output_file.h"
 
 #include "core/error.h"
+#include "scene/particle_file.h"
 
 #include <fmt/format.h>
 #include <fcntl.h>
@@ -83,6 +84,16 @@ void writeText(const std::string& path, const std::string& text) {
         const bool written = put(file, text);
         return std::fclose(file) == 0 && written;
     });
+}
+
+void saveParticles(const std::string& path, const std::vector<Particle>& particles) {
+    ParticleTable table;
+    for (const Particle& p : particles) {
+        table.positions.push_back(p.position), table.velocities.push_back(p.velocity);
+        table.densities.push_back(p.density), table.pressures.push_back(p.pressure);
+    }
+    requireWritable(path);
+    replaceFile(path, [&](const std::string& temporary) { return writeParticles(temporary, path.ends_with(".h5"), table); });
 }
 
 }  // namespace spindrift

@@ -1,5 +1,7 @@
 #pragma once
 // Files that are there whole or not at all.
+#include "sim/simulation.h"
+
 #include <functional>
 #include <string>
 
@@ -19,5 +21,9 @@ void replaceFile(const std::string& path, const std::function<bool(const std::st
 
 // Writes text beside its target and renames it; "-" is standard output. Throws Error(Exit::Output).
 void writeText(const std::string& path, const std::string& text);
+
+// Particles as a table that a body of shape file can be: HDF5 when the path ends in .h5, else CSV; world coordinates, all digits. Throws
+// Error(Exit::Output).
+void saveParticles(const std::string& path, const std::vector<Particle>&);
 
 }  // namespace spindrift

@@ -4,7 +4,7 @@
 #include "scene/convex.h"
 #include "scene/json.h"
 #include "scene/motion.h"
-#include "scene/particles.h"
+#include "scene/particle_file.h"
 #include "scene/schema.h"
 
 #include <fmt/format.h>
@@ -77,11 +77,11 @@ void checkDomain(const Scene& scene) {
 }
 
 // Shifting spreads particles evenly over all the space it finds, and the pressure's gradient does not feel a surface.
-void checkFills(const Scene& scene) {
+void checkFills(const Scene& scene, ParticleCount count) {
     if (scene.simulation.formulation != Formulation::TransportVelocity) return;
     const Vec3d size = toDouble(scene.domain.max) - toDouble(scene.domain.min);
     const double dx = scene.simulation.spacing, depth = scene.simulation.dimensions == 2 ? dx : size.z;
-    const double filled = double(countParticles(scene).fluid) * dx * dx * dx / (size.x * size.y * depth);
+    const double filled = double(count.fluid) * dx * dx * dx / (size.x * size.y * depth);
     if (filled < 0.9)
         refuse("simulation.formulation",
                fmt::format("transport_velocity has no free surfaces, and fluid fills {:.0f} % of the domain; use delta_sph "
@@ -105,6 +105,7 @@ void checkMovingFace(const Scene& scene) {
 
 void checkBody(const Scene& scene, size_t index) {
     const Body& body = scene.fluid.bodies[index];
+    if (body.shape == Shape::File) return;   // when it is known to fit into memory
     const bool cornered = body.shape == Shape::Block || body.shape == Shape::Wedge;
     const Vec3 half = toFloat(halfExtent(body));
     const Vec3 low = cornered ? body.min : body.center - half, high = cornered ? body.max : body.center + half;
@@ -157,6 +158,7 @@ void checkSolid(const Scene& scene, size_t index) {
     const std::string path = fmt::format("solids[{}]", index);
     if (scene.simulation.formulation == Formulation::Classic)
         refuse(path, "the classic formulation has no solids; use wcsph");
+    if (solid.shape == Shape::File) refuse(path + ".shape", "a file is for bodies of fluid; name another shape");
     const Vec3d half = halfExtent(solid), middle = convexOf(solid, 3).middle;
     bool outside = false;
     for (int k = 0; k < scene.simulation.dimensions; ++k) {
@@ -174,6 +176,33 @@ void checkSolid(const Scene& scene, size_t index) {
     if (scene.simulation.dimensions == 2 && (solid.spinAxis != Axis::Z || solid.velocity.z != 0))
         refuse(path, "moves out of the plane, and there are two dimensions; leave z out, and turn about z");
     checkKeyframes(solid, path);
+}
+
+void checkParticleFile(const Scene& scene, size_t index) {
+    const Body& body = scene.fluid.bodies[index];
+    if (body.shape != Shape::File) return;
+    const ParticleTable table = readParticles(body.path);
+    for (size_t i = 0; i < table.positions.size(); ++i)
+        for (int k = 0; k < scene.simulation.dimensions; ++k) {
+            const double low = scene.domain.min[k], high = scene.domain.max[k], at = table.positions[i][k], tolerance = 1e-5 * (high - low);
+            if (!(at >= low - tolerance && at <= high + tolerance))
+                refuse(bodyPath(index) + ".path",
+                       fmt::format("{}: {}: {} = {} m is outside the domain's {} to {} m; remove the particle or enlarge the domain",
+                                   body.path, table.nameOf(i), "xyz"[k], at, low, high));
+        }
+}
+
+// The particles that the bodies have, files among them counted.
+ParticleCount countBodies(const Scene& scene) {
+    try {
+        return countParticles(scene);
+    } catch (const Error& error) { refuse("fluid.bodies", error.what()); }
+}
+
+void checkOutput(const Output& output) {
+    const std::string& file = output.particles;
+    if (!file.empty() && !file.ends_with(".csv") && !file.ends_with(".h5"))
+        refuse("output.particles", fmt::format("\"{}\" is of no known kind; name a file that ends in .csv or .h5", file));
 }
 
 // Where something reads must be in the domain; in two dimensions z does not matter, and a gauge's own axis never does.
@@ -222,8 +251,7 @@ int64_t availableMemory() {
     return available;
 }
 
-void checkCounts(const Scene& scene) {
-    const ParticleCount count = countParticles(scene);
+void checkCounts(const Scene& scene, ParticleCount count) {
     const std::string what =
         fmt::format("{} fluid and {} boundary particles", count.fluid, count.walls);
     const char* remedy = "raise simulation.spacing or shrink the bodies and the domain";
@@ -233,7 +261,7 @@ void checkCounts(const Scene& scene) {
             fmt::format("simulation.spacing: {} are more than the {} that a run can have; {}", what,
                         MostParticles, remedy));
     constexpr double GiB = 1 << 30;
-    const int64_t needed = estimateMemory(scene), available = availableMemory();
+    const int64_t needed = estimateMemory(scene, count), available = availableMemory();
     if (needed > available)
         throw Error(
             Exit::Memory,
@@ -256,8 +284,7 @@ double mostCells(const Scene& scene, double particles) {
 
 }  // namespace
 
-int64_t estimateMemory(const Scene& scene) {
-    const ParticleCount count = countParticles(scene);
+int64_t estimateMemory(const Scene& scene, ParticleCount count) {
     const double particles = double(count.fluid) + double(count.walls);
     // A GPU's run keeps nothing here, but passes through.
     if (scene.compute.backend == Backend::Cuda) return int64_t(HostBytesPerGpuParticle * particles);
@@ -265,8 +292,7 @@ int64_t estimateMemory(const Scene& scene) {
     return int64_t(std::min(bytes, 9e18));
 }
 
-int64_t estimateGpuMemory(const Scene& scene) {
-    const ParticleCount count = countParticles(scene);
+int64_t estimateGpuMemory(const Scene& scene, ParticleCount count) {
     const double fluid = double(count.fluid), walls = double(count.walls);
     const double more = (carriesDensity(scene) ? GpuBytesPerCarried : 0) +
                         (scene.simulation.formulation == Formulation::TransportVelocity ? GpuBytesPerShifted : 0);
@@ -275,14 +301,15 @@ int64_t estimateGpuMemory(const Scene& scene) {
     return int64_t(std::min(bytes, 9e18));
 }
 
-void checkScene(const Scene& scene, const std::string& place) {
+void checkScene(const Scene& scene, const std::string& place, std::optional<ParticleCount> begun) {
     requireRanges(scene, place);
     try {
         checkDomain(scene);
         if (scene.fluid.bodies.empty())
             refuse("fluid.bodies", "is empty; add a body of fluid, e.g. {\"shape\": \"block\"}");
         for (size_t b = 0; b < scene.fluid.bodies.size(); ++b) checkBody(scene, b);
-        checkFills(scene);
+        const ParticleCount count = begun ? *begun : countBodies(scene);
+        checkFills(scene, count);
         checkMovingFace(scene);
         for (size_t i = 0; i < scene.solids.size(); ++i) checkSolid(scene, i);
         for (size_t p = 0; p < scene.output.probes.size(); ++p) checkProbe(scene, p);
@@ -290,7 +317,9 @@ void checkScene(const Scene& scene, const std::string& place) {
             refuse("view.range_max",
                    fmt::format("{} is not above view.range_min {}; make it larger",
                                scene.view.rangeMax, scene.view.rangeMin));
-        checkCounts(scene);
+        checkOutput(scene.output);
+        checkCounts(scene, count);
+        for (size_t b = 0; b < scene.fluid.bodies.size() && !begun; ++b) checkParticleFile(scene, b);
     } catch (const Error& error) {
         throw Error(error.exit, fmt::format("{}: {}", place, error.what()));
     }

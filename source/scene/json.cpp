@@ -119,7 +119,14 @@ Scene parseScene(const std::string& text, const std::string& place) {
     return scene;
 }
 
-Scene loadScene(const std::string& file) { return parseScene(readText(file), file); }
+Scene loadScene(const std::string& file) {
+    Scene scene = parseScene(readText(file), file);
+    // A file that a scene names is beside it; known by its whole path the scene can be saved anywhere.
+    for (Body& body : scene.fluid.bodies)
+        if (!body.path.empty())
+            body.path = (std::filesystem::absolute(file).parent_path() / body.path).lexically_normal().string();
+    return scene;
+}
 
 std::string writeScene(const Scene& scene) {
     Json root;

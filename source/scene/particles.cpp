@@ -2,6 +2,7 @@
 
 #include "scene/convex.h"
 #include "scene/motion.h"
+#include "scene/particle_file.h"
 #include "scene/sample_solid.h"
 
 #include <algorithm>
@@ -42,6 +43,7 @@ bool isCornered(const Form& form) { return form.shape == Shape::Block || form.sh
 Lattice bodyLattice(const Scene& scene, const Body& body) {
     const double dx = scene.simulation.spacing;
     Lattice lattice{{}, {}, {dx, dx, flat(scene, 2) ? 0 : dx}};
+    if (body.shape == Shape::File) return lattice;   // no point
     const Vec3d origin = toDouble(scene.domain.min);
     for (int k = 0; k < 3; ++k) {
         lattice.n[k] = latticePlanes(scene, body, k);
@@ -59,6 +61,7 @@ Lattice bodyLattice(const Scene& scene, const Body& body) {
 // Whether p, relative to domain.min, lies in the body or nearer than `margin` metres to its round
 // side. Flat sides are taken where the lattice ends, half a spacing beyond its last plane.
 bool contains(const Body& body, const Lattice& lattice, Vec3d origin, Vec3d p, double margin) {
+    if (body.shape == Shape::File) return false;
     for (int k = 0; k < 3; ++k) {
         const bool plane = isCornered(body) || (body.shape == Shape::Cylinder && k == int(body.axis));
         if (!plane) continue;
@@ -247,6 +250,22 @@ void placeBody(const Scene& scene, const std::vector<Lattice>& lattices, size_t 
             }
 }
 
+// Appends the particles of a file as they are, in two dimensions in the layer of the others.
+void placeFile(const Scene& scene, const Body& body, Placement& out) {
+    const ParticleTable table = readParticles(body.path);
+    const Vec3d origin = toDouble(scene.domain.min);
+    for (size_t i = 0; i < table.positions.size(); ++i) {
+        Vec3d place = table.positions[i] - origin, velocity = table.velocities[i];
+        if (flat(scene, 2)) place.z = 0.5 * domainSize(scene).z, velocity.z = 0;
+        out.positions.push_back(toFloat(place));
+        out.velocities.push_back(toFloat(velocity));
+        out.pressures.push_back(table.pressures.empty() ? 0.0f : float(table.pressures[i]));
+    }
+    if (table.densities.empty()) return;
+    out.densities.resize(out.positions.size() - table.densities.size());
+    for (double rho : table.densities) out.densities.push_back(float(rho));
+}
+
 }  // namespace
 
 float supportRadius(const Scene& scene) {
@@ -285,7 +304,10 @@ Placement placeParticles(const Scene& scene) {
     out.pressures.reserve(expected);
     Jitter jitter(scene);
     const SolidSpace solids(scene);
-    for (size_t b = 0; b < lattices.size(); ++b) placeBody(scene, lattices, b, solids, jitter, out);
+    for (size_t b = 0; b < lattices.size(); ++b)
+        scene.fluid.bodies[b].shape == Shape::File ? placeFile(scene, scene.fluid.bodies[b], out)
+                                                   : placeBody(scene, lattices, b, solids, jitter, out);
+    if (!out.densities.empty()) out.densities.resize(out.positions.size());
     for (const Solid& solid : scene.solids) {
         const std::vector<Vec3> points = sampleSolid(scene, solid).positions;
         out.walls.insert(out.walls.end(), points.begin(), points.end());
@@ -336,6 +358,10 @@ ParticleCount countParticles(const Scene& scene) {
     const double dx = scene.simulation.spacing;
     double fluid = 0;
     for (const Body& body : scene.fluid.bodies) {
+        if (body.shape == Shape::File) {
+            fluid += double(countParticlesIn(body.path));
+            continue;
+        }
         const Lattice l = bodyLattice(scene, body);
         double points = double(l.n[0]) * double(l.n[1]) * double(l.n[2]);
         if (scene.simulation.dimensions == 2) {

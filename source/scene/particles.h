@@ -14,6 +14,7 @@ struct Placement {
     std::vector<Vec3> positions, velocities, walls;
     std::vector<float> pressures;
     std::vector<int> solidSizes;
+    std::vector<float> densities{};   // kg/m^3, 0 where the pressure says; none at all where no file had any
 };
 
 // Where the fluid is at the start, m from the domain's corner, and how fast, m/s.
@@ -24,7 +25,7 @@ FluidExtent extentOf(const Placement&);
 // points now.
 double soundSpeed(const Scene&, const FluidExtent&);
 
-// Fills the bodies on lattices and builds the boundary particles, in an order that depends on the
+// Fills the bodies on lattices or from their files, and builds the boundary particles, in an order that depends on the
 // scene only.
 Placement placeParticles(const Scene&);
 
@@ -32,9 +33,11 @@ struct ParticleCount {
     int64_t fluid = 0, walls = 0;
 };
 
+inline ParticleCount countOf(const Placement& p) { return {int64_t(p.positions.size()), int64_t(p.walls.size())}; }
+
 // How many particles placeParticles would make, at most, without making any: exact for blocks that
 // don't overlap and for the domain's walls, a few per cent too many for round bodies, more for solids. Absurd sizes saturate
-// instead of overflowing.
+// instead of overflowing. Throws Error (Scene) when a body's file can't be read.
 ParticleCount countParticles(const Scene&);
 
 // Number of lattice planes of a body along an axis (0 x, 1 y, 2 z); 0 means that the body is too

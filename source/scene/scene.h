@@ -17,7 +17,7 @@ enum class Kernel { WendlandC2, CubicSpline };
 enum class EquationOfState { Tait, Linear };
 enum class WallKind { Reflect, Particles };
 enum class TimeMode { Fixed, Cfl };
-enum class Shape { Block, Sphere, Cylinder, Wedge };
+enum class Shape { Block, Sphere, Cylinder, Wedge, File };
 enum class Axis { X, Y, Z };
 enum class ColorBy { Plain, Velocity, Pressure, Density, Acceleration, Id };
 enum class Field { Uniform, TaylorGreen, Stretching, Rotation, Shear };
@@ -28,7 +28,7 @@ enum class ProbeKind { Point, Line, Height, Front };
 enum class Order { Mean, Linear };
 
 // A block reads min and max, a wedge too: its ridge runs along z, above the middle of its base. A sphere reads center and
-// radius, a cylinder center, radius, height and axis.
+// radius, a cylinder center, radius, height and axis. A file, of fluid only, has no shape but particles.
 struct Form {
     Shape shape = Shape::Block;
     Vec3 min{0, 0, 0}, max{0.5f, 0.5f, 0.5f};   // m
@@ -38,11 +38,12 @@ struct Form {
     Axis axis = Axis::Y;
 };
 
-// One body of fluid, filled on a lattice.
+// One body of fluid, filled on a lattice, or with the particles of a file as they are.
 struct Body : Form {
     Vec3 velocity{0, 0, 0};                     // m/s; for a field its amplitude is the length
     Field field = Field::Uniform;               // of velocity at the start
     StartPressure pressure = StartPressure::None;   // where a field has its own, that is added
+    std::string path{};                         // of a file, beside the scene file when relative
 };
 
 // Where a solid is at one time, relative to its place in the scene.
@@ -171,6 +172,7 @@ struct Output {
     float checkpointEvery = 0;                  // s of simulated time, 0 = at the end only
     std::string hdf5;                           // the time series as an HDF5 file
     float sampleEvery = 0;                      // s of simulated time between rows of the series, 0 = with the frames, by fps
+    std::string particles;                      // CSV or HDF5 path: the last state, which a body of shape file can begin with
     std::vector<Probe> probes;
 };
 

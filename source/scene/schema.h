@@ -29,7 +29,7 @@ constexpr auto enumNames(Kernel) { return std::array{"wendland_c2", "cubic_splin
 constexpr auto enumNames(EquationOfState) { return std::array{"tait", "linear"}; }
 constexpr auto enumNames(WallKind) { return std::array{"reflect", "particles"}; }
 constexpr auto enumNames(TimeMode) { return std::array{"fixed", "cfl"}; }
-constexpr auto enumNames(Shape) { return std::array{"block", "sphere", "cylinder", "wedge"}; }
+constexpr auto enumNames(Shape) { return std::array{"block", "sphere", "cylinder", "wedge", "file"}; }
 constexpr auto enumNames(Axis) { return std::array{"x", "y", "z"}; }
 constexpr auto enumNames(ColorBy) {
     return std::array{"plain", "velocity", "pressure", "density", "acceleration", "id"};
@@ -50,7 +50,8 @@ constexpr auto enumNames(Order) { return std::array{"mean", "linear"}; }
 // Which knobs a shape has depends on which it is; that is visited first, so that a reader has set it before the others are chosen.
 template <class F, class Visitor>
 void visitForm(F& f, const std::string& at, Visitor&& visit) {
-    visit(at + ".shape", f.shape, Knob{"", 0, 0, "block, sphere, cylinder or wedge", Restart});
+    visit(at + ".shape", f.shape, Knob{"", 0, 0, "block, sphere, cylinder or wedge; of fluid also file: the particles of another run or program", Restart});
+    if (f.shape == Shape::File) return;
     if (f.shape == Shape::Block || f.shape == Shape::Wedge) {
         visit(at + ".min", f.min, Knob{"m", -1e4f, 1e4f, "lower corner", Restart});
         visit(at + ".max", f.max, Knob{"m", -1e4f, 1e4f, "upper corner", Restart});
@@ -69,6 +70,14 @@ template <class B, class Visitor>
 requires std::is_same_v<std::remove_const_t<B>, Body>
 void visitMember(B& b, const std::string& at, Visitor&& visit) {
     visitForm(b, at, visit);
+    if (b.shape == Shape::File) {
+        visit(at + ".path", b.path,
+              Knob{"", 0, 0,
+                   "CSV with a header, or HDF5: x, y, z, and if there are any vx, vy, vz, rho, p; all of them are taken, also inside "
+                   "other bodies. Each has the mass of spacing^3. As output.particles writes it; a relative path starts at the scene file",
+                   Restart});
+        return;
+    }
     visit(at + ".velocity", b.velocity, Knob{"m/s", -1e3f, 1e3f, "initial velocity", Restart});
     visit(at + ".field", b.field,
           Knob{"", 0, 0,
@@ -304,6 +313,8 @@ void visitOutput(S& s, Visitor&& visit) {
           Knob{"", 0, 0, "HDF5 file from which the run can go on, written at its end and when it is stopped", Restart});
     visit("output.checkpoint_every", o.checkpointEvery,
           Knob{"s", 0, 1e6f, "simulated time between checkpoints, 0 = at the end only", Restart});
+    visit("output.particles", o.particles,
+          Knob{"", 0, 0, "the last state's particles, .csv or .h5: what a body of shape file can start another run with", Restart});
     visit("output.hdf5", o.hdf5, Knob{"", 0, 0, "HDF5 time series: a dataset with its unit for each column", Restart});
     visit("output.sample_every", o.sampleEvery,
           Knob{"s", 0, 1e6f, "simulated time between rows of the series, for impacts shorter than a frame; 0 = with the frames, by output.fps", Restart});

@@ -23,22 +23,22 @@ std::string whyNoGpu(const Scene& scene) {
 }
 
 // Asked before anything is taken: a GPU's memory is not swapped, and a half-built run would be of no use.
-static std::string whyTooLargeForGpu(const Scene& scene) {
-    const double GiB = 1 << 30, needed = double(estimateGpuMemory(scene)), free = double(cudaFreeMemory(deviceOf(scene)));
+static std::string whyTooLargeForGpu(const Scene& scene, ParticleCount count) {
+    const double GiB = 1 << 30, needed = double(estimateGpuMemory(scene, count)), free = double(cudaFreeMemory(deviceOf(scene)));
     if (needed <= free) return "";
     auto inGiB = [&](double bytes) { return std::to_string(bytes / GiB).substr(0, 5) + " GiB"; };
     return "simulation.spacing: the particles need about " + inGiB(needed) + " of GPU memory, " + inGiB(free) + " are free";
 }
 
 // Asked for CUDA it is CUDA or an error; `auto` takes the GPU when there is one that can do what the scene asks for.
-static bool runsOnGpu(const Scene& scene) {
+static bool runsOnGpu(const Scene& scene, ParticleCount count) {
     if (scene.compute.backend == Backend::Cpu) return false;
     const bool asked = scene.compute.backend == Backend::Cuda;
     if (const std::string why = whyNoGpu(scene); !why.empty()) {
         if (asked) throw Error(Exit::NoDevice, "--backend cuda: " + why + "; or use --backend cpu");
         return false;
     }
-    if (const std::string why = whyTooLargeForGpu(scene); !why.empty()) {
+    if (const std::string why = whyTooLargeForGpu(scene, count); !why.empty()) {
         if (asked) throw Error(Exit::Memory, why + "; raise it, or use --backend cpu");
         return false;
     }
@@ -46,7 +46,7 @@ static bool runsOnGpu(const Scene& scene) {
 }
 
 static std::unique_ptr<Simulation> build(const Scene& scene, const RunState* state) {
-    const bool gpu = runsOnGpu(scene);
+    const bool gpu = runsOnGpu(scene, state ? countOf(state->particles) : countParticles(scene));
     try {
         const RunState start = state ? RunState() : RunState(placeParticles(scene));
         const RunState& from = state ? *state : start;

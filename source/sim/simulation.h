@@ -41,6 +41,7 @@ struct Measurement {
     double densityError = 0;         // mean of max(rho/rho0 - 1, 0): compression only
     double maxDensityError = 0;      // largest rho/rho0 - 1
     double maxSpeed = 0;             // m/s
+    double soundSpeed = 0;           // m/s, of the equation of state
     std::vector<SolidMeasurement> solids;   // one for each of the scene's
     bool finite = true;              // no NaN or infinity in position, velocity, density
 };

@@ -229,13 +229,15 @@ private:
     template <class K, Lists lists, class... Ts> static PassFunction forces(TermList<Ts...>) {
         return &SimulationOn::template onFluid<ComputeForces<K, lists, TermList<Ts...>>>;
     }
-    // At the beginning by the equation of state from the pressures.
+    // At the beginning those of the placement, else by the equation of state from the pressures.
     std::vector<float> densitiesOf(const RunState& state) const {
         if (!carriesDensity(scene_) || !state.densities.empty()) return state.densities;
-        std::vector<float> densities;
-        for (float pressure : state.particles.pressures) {
-            const double power = std::max(1 + double(pressure) / constants_.stiffness, 0.1);
-            densities.push_back(float(constants_.restDensity * std::pow(power, 1.0 / constants_.gamma)));
+        std::vector<float> densities = state.particles.densities;
+        for (size_t i = 0; i < state.particles.pressures.size(); ++i) {
+            const double power = std::max(1 + double(state.particles.pressures[i]) / constants_.stiffness, 0.1);
+            const float density = float(constants_.restDensity * std::pow(power, 1.0 / constants_.gamma));
+            if (i == densities.size()) densities.push_back(density);
+            if (densities[i] == 0) densities[i] = density;
         }
         densities.resize(state.particles.positions.size(), float(constants_.restDensity));
         return densities;
@@ -397,6 +399,7 @@ template <class Device> Measurement SimulationOn<Device>::measure() {
     m.densityError = t.compression / n;
     m.maxDensityError = t.maxDensity / rho0 - 1;
     m.maxSpeed = std::sqrt(t.maxSpeed2);
+    m.soundSpeed = constants_.soundSpeed;
     m.finite = t.notFinite == 0;
     if (solids_.moves()) moveSolids();   // to where the fluid is since the last step
     const std::vector<SolidState> solids = solids_.download();

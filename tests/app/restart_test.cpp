@@ -43,6 +43,25 @@ TEST_F(Restart, SolidsGoOnFromWhereTheyAre) {
     ASSERT_EQ(call("half.h5 --headless --quiet --threads 1 --time 0.15 --checkpoint rest.h5").code, 0);
     expectSame(read("whole.h5"), read("rest.h5"));
     EXPECT_EQ(read("rest.h5").state.particles.solidSizes.size(), 3u);
+// The end of a run as the start of another one; a checkpoint of that has its own particles and needs the file no more.
+TEST_F(Restart, ParticlesOfOneRunBeginAnother) {
+    const std::string tank = "dam_break --headless --backend cpu --quiet --set simulation.spacing=0.04 --set simulation.formulation=delta_sph ";
+    for (const std::string end : {"end.csv", "end.h5"}) {
+        ASSERT_EQ(call(tank + "--steps 20 --set output.particles=" + end + " --checkpoint first.h5").code, 0);
+        const Outcome next = call(tank + "--steps 1 --set 'fluid.bodies=[{\"shape\":\"file\",\"path\":\"" + end + "\"}]' --checkpoint next.h5");
+        ASSERT_EQ(next.code, 0) << next.text;
+        const Outcome same = call("first.h5 --headless --quiet --steps 1 --checkpoint went_on.h5");
+        ASSERT_EQ(same.code, 0) << same.text;
+        const Checkpoint a = read("went_on.h5"), b = read("next.h5");
+        ASSERT_EQ(a.state.particles.positions.size(), b.state.particles.positions.size());
+        double apart = 0;
+        for (size_t i = 0; i < a.state.particles.positions.size(); ++i)
+            apart = std::max<double>(apart, length(a.state.particles.positions[i] - b.state.particles.positions[i]));
+        EXPECT_LT(apart, 1e-4) << "the speed of sound, and with it the step, is that of another start";
+        fs::remove(folder_ / end);
+        EXPECT_EQ(call("next.h5 --headless --quiet --steps 2").code, 0) << "needs the file still";
+    }
+    expectMistake(tank + "--steps 1 --set 'fluid.bodies=[{\"shape\":\"file\",\"path\":\"gone.csv\"}]'", Exit::Scene, "gone.csv: no such file");
 }
 
 TEST_F(Restart, LiveKnobsMayChangeOthersNot) {

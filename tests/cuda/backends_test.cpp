@@ -153,8 +153,8 @@ TEST(Gpu, MemoryPerParticleOfTheDefaultScene) {
     const double each = double(gpu->bytes()) / (gpu->fluidCount() + gpu->wallCount());
     EXPECT_LE(each, 160);
     EXPECT_GT(each, 60);
-    EXPECT_LE(gpu->bytes(), estimateGpuMemory(scene));
-    EXPECT_GT(gpu->bytes(), estimateGpuMemory(scene) / 100);
+    EXPECT_LE(gpu->bytes(), estimateGpuMemory(scene, countParticles(scene)));
+    EXPECT_GT(gpu->bytes(), estimateGpuMemory(scene, countParticles(scene)) / 100);
 }
 
 TEST(Gpu, OneParticleIsWhatAllSay) {

@@ -68,6 +68,9 @@ TEST(CheckScene, RefusesNonsenseByPathAndRemedy) {
         {{R"(output.probes=[{"name":""}])"}, "output.probes[0].name: \"\" can't"},
         {{R"(output.probes=[{"kind":"front","axis":"z"}])", "simulation.dimensions=2"},
          "output.probes[0].axis: there is no z in two dimensions"},
+        {{"output.particles=end.txt"}, "output.particles: \"end.txt\" is of no known kind; name a file that ends in .csv or .h5"},
+        {{R"(fluid.bodies=[{"shape":"file","path":"/no/such.csv"}])"}, "fluid.bodies: /no/such.csv: no such file"},
+        {{R"(fluid.bodies=[{"shape":"file"}])"}, "no file is named"},
         {{"view.range=fixed", "view.range_min=2"},
          "view.range_max: 1 is not above view.range_min 2"},
     };
@@ -97,11 +100,12 @@ TEST(CheckScene, RefusesMoreThanTheMachinesMemory) {
 
 TEST(CheckScene, MemoryGrowsWithParticles) {
     Scene scene;
-    const int64_t coarse = estimateMemory(scene);
+    auto memory = [&] { return estimateMemory(scene, countParticles(scene)); };
+    const int64_t coarse = memory();
     scene.simulation.spacing = 0.01f;
     EXPECT_GT(coarse, 20250 * 400);
-    EXPECT_GT(estimateMemory(scene), 5 * coarse);
-    EXPECT_LT(estimateMemory(scene), 9 * coarse);
+    EXPECT_GT(memory(), 5 * coarse);
+    EXPECT_LT(memory(), 9 * coarse);
 }
 
 }  // namespace

@@ -1,0 +1,139 @@
+#include "scene/particle_file.h"
+
+#include "core/error.h"
+#include "core/hdf5_file.h"
+#include "core/table.h"
+#include "scene/suggest.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <iterator>
+
+namespace spindrift {
+namespace {
+
+constexpr const char* Names[] = {"x", "y", "z", "vx", "vy", "vz", "rho", "p"};
+constexpr const char* Units[] = {"m", "m", "m", "m/s", "m/s", "m/s", "kg/m^3", "Pa"};
+constexpr size_t Columns = std::size(Names), Rho = 6, P = 7;
+using Values = std::array<std::vector<double>, Columns>;   // of each column, empty where there is none
+
+[[noreturn]] void refuse(const std::string& path, const std::string& what) {
+    throw Error(Exit::Scene, fmt::format("{}: {}", path, what));
+}
+
+// Which columns there are must make sense together, and each density be one.
+ParticleTable tableOf(const std::string& path, Values v, std::vector<int> lines) {
+    for (size_t k = 0; k < 3; ++k)
+        if (v[k].empty()) refuse(path, fmt::format("has no particles, or no column {}; it needs x, y, z, and may have vx, vy, vz, rho, p", Names[k]));
+    for (size_t k = 1; k < Columns; ++k)
+        if (!v[k].empty() && v[k].size() != v[0].size())
+            refuse(path, fmt::format("{} values of {}, but {} of x", v[k].size(), Names[k], v[0].size()));
+    if (v[3].empty() != v[4].empty() || v[4].empty() != v[5].empty())
+        refuse(path, "has some of the columns vx, vy, vz; give all three or none");
+    ParticleTable table;
+    table.lines = std::move(lines);
+    std::vector<std::string> complaints;
+    for (size_t i = 0; i < v[0].size(); ++i) {
+        table.positions.push_back({v[0][i], v[1][i], v[2][i]});
+        table.velocities.push_back(v[3].empty() ? Vec3d{} : Vec3d{v[3][i], v[4][i], v[5][i]});
+        for (size_t k = 0; k < Columns; ++k)
+            if (!v[k].empty() && !std::isfinite(v[k][i])) complaints.push_back(fmt::format("{}: {} is no number", table.nameOf(i), Names[k]));
+        if (!v[Rho].empty() && v[Rho][i] <= 0)
+            complaints.push_back(fmt::format("{}: rho = {:g} kg/m^3 is not above 0", table.nameOf(i), v[Rho][i]));
+    }
+    refuseAny(path, complaints);
+    table.densities = std::move(v[Rho]), table.pressures = std::move(v[P]);
+    return table;
+}
+
+ParticleTable readCsv(const std::string& path) {
+    Table file = readStrictTable(path, {"x", "y", "z"});
+    Values values;
+    for (auto& [name, column] : file.columns) {
+        const size_t k = size_t(std::find(std::begin(Names), std::end(Names), name) - std::begin(Names));
+        if (k == Columns)
+            refuse(path, fmt::format("unknown column \"{}\"; known: {}", name.substr(0, 40), listed({std::begin(Names), std::end(Names)})));
+        values[k] = std::move(column);
+    }
+    return tableOf(path, std::move(values), std::move(file.lines));
+}
+
+ParticleTable readHdf5(const std::string& path, hid_t file) {
+    Values values;
+    for (size_t k = 0; k < Columns; ++k)
+        if (H5Lexists(file, Names[k], H5P_DEFAULT) > 0) values[k] = hdf5::readNumbers(file, Names[k]);
+    return tableOf(path, std::move(values), {});
+}
+
+// Calls f with the opened file, and says in one line what is wrong with it.
+template <class F> auto withHdf5(const std::string& path, const F& f) {
+    try {
+        const hdf5::Handle file = hdf5::openFile(path);
+        return f(file);
+    } catch (const hdf5::Trouble& trouble) {
+        refuse(path, fmt::format("the HDF5 file is damaged, or {} is no list of numbers", trouble.what));
+    }
+}
+
+}  // namespace
+
+std::string ParticleTable::nameOf(size_t particle) const {
+    return lines.empty() ? fmt::format("particle {}", particle) : fmt::format("line {}", lines[particle]);
+}
+
+ParticleTable readParticles(const std::string& path) {
+    return hdf5::isFile(path) ? withHdf5(path, [&](hid_t file) { return readHdf5(path, file); }) : readCsv(path);
+}
+
+int64_t countParticlesIn(const std::string& path) {
+    if (path.empty()) refuse("\"\"", "no file is named; give its path");
+    if (!hdf5::isFile(path)) return countRows(path);
+    return withHdf5(path, [](hid_t file) { return int64_t(hdf5::Array(file, Names[0], 1).size[0]); });
+}
+
+namespace {
+
+std::vector<double> columnOf(const ParticleTable& table, size_t k) {
+    if (k == Rho) return table.densities;
+    if (k == P) return table.pressures;
+    std::vector<double> values;
+    for (const Vec3d& v : k < 3 ? table.positions : table.velocities) values.push_back(v[int(k % 3)]);
+    return values;
+}
+
+bool writeCsv(const std::string& path, const std::vector<std::vector<double>>& values) {
+    std::FILE* file = std::fopen(path.c_str(), "wb");
+    if (!file) return false;
+    std::string text;
+    for (size_t k = 0; k < Columns; ++k)
+        if (!values[k].empty()) text += fmt::format("{}{} [{}]", k ? "," : "", Names[k], Units[k]);
+    text += '\n';
+    bool written = true;
+    for (size_t i = 0; i < values[0].size() && written; ++i) {
+        for (size_t k = 0; k < Columns; ++k)
+            if (!values[k].empty()) fmt::format_to(std::back_inserter(text), "{}{}", k ? "," : "", values[k][i]);
+        text += '\n';
+        if (text.size() < (1 << 16) && i + 1 < values[0].size()) continue;
+        written = std::fwrite(text.data(), 1, text.size(), file) == text.size();
+        text.clear();
+    }
+    return std::fclose(file) == 0 && written;
+}
+
+}  // namespace
+
+bool writeParticles(const std::string& path, bool hdf5, const ParticleTable& table) {
+    std::vector<std::vector<double>> values;
+    for (size_t k = 0; k < Columns; ++k) values.push_back(columnOf(table, k));
+    if (!hdf5) return writeCsv(path, values);
+    return hdf5::writeFile(path, [&](hid_t file) {
+        for (size_t k = 0; k < Columns; ++k)
+            if (!values[k].empty()) hdf5::writeNumbers(file, Names[k], Units[k], values[k]);
+    });
+}
+
+}  // namespace spindrift

@@ -1,0 +1,31 @@
+#pragma once
+// Particles as a table: the end of one run, or any other program's particles, as the start of another run.
+#include "core/vec.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace spindrift {
+
+// One entry a particle, SI units, world coordinates. Densities and pressures are empty where the table has none.
+struct ParticleTable {
+    std::vector<Vec3d> positions, velocities;
+    std::vector<double> densities, pressures;
+    std::vector<int> lines;   // of a CSV file, from 1 on; empty for HDF5
+    // "line 7", or "particle 7" of an HDF5 file.
+    std::string nameOf(size_t particle) const;
+};
+
+// CSV: a header line names the columns x, y, z, vx, vy, vz, rho, p in any order, rho and p may be missing, and the velocities all three, which
+// are 0 then (core/table.h). HDF5: datasets of one dimension with these names, others are none of our business. Throws Error (Scene), one line
+// that names the file and its first bad lines: what is no finite number, too many or too few values, a density that is not positive.
+ParticleTable readParticles(const std::string& path);
+
+// How many there are, without reading them all. Throws Error (Scene) when the file can't be read.
+int64_t countParticlesIn(const std::string& path);
+
+// False when not all of it was written. Numbers have all their digits.
+bool writeParticles(const std::string& path, bool hdf5, const ParticleTable&);
+
+}  // namespace spindrift
