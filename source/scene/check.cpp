@@ -88,6 +88,21 @@ void checkFills(const Scene& scene, ParticleCount count) {
                            "or wcsph, or fill it", 100 * filled));
 }
 
+// Relaxing works through the whole box around the bodies, and has a start of its own.
+void checkPlacement(const Scene& scene) {
+    const SimulationKnobs& s = scene.simulation;
+    if (s.placement == StartPlaces::Lattice) return;
+    constexpr double MostCells = 1e8;
+    if (s.jitter != 0)
+        refuse("simulation.jitter", "moves particles of a lattice; set it to 0, or simulation.placement to lattice");
+    for (size_t b = 0; b < scene.fluid.bodies.size(); ++b)
+        if (scene.fluid.bodies[b].shape == Shape::File)
+            refuse("simulation.placement", fmt::format("relaxed moves no particles of a file, as {} has them; use lattice", bodyPath(b)));
+    if (const double cells = relaxedCells(scene); cells > MostCells)
+        refuse("simulation.placement", fmt::format("relaxed would work through {:.2g} spacings^{} around the bodies, more than {:g}; use "
+                                                   "lattice, or a larger simulation.spacing", cells, s.dimensions, MostCells));
+}
+
 void checkMovingFace(const Scene& scene) {
     const Walls& walls = scene.walls;
     if (walls.movingFace == Face::None) return;
@@ -311,6 +326,7 @@ void checkScene(const Scene& scene, const std::string& place, std::optional<Part
         const ParticleCount count = begun ? *begun : countBodies(scene);
         checkFills(scene, count);
         checkMovingFace(scene);
+        if (!begun) checkPlacement(scene);
         for (size_t i = 0; i < scene.solids.size(); ++i) checkSolid(scene, i);
         for (size_t p = 0; p < scene.output.probes.size(); ++p) checkProbe(scene, p);
         if (scene.view.range == RangeMode::Fixed && scene.view.rangeMin >= scene.view.rangeMax)

@@ -3,6 +3,7 @@
 #include "scene/convex.h"
 #include "scene/motion.h"
 #include "scene/particle_file.h"
+#include "scene/relax.h"
 #include "scene/sample_solid.h"
 
 #include <algorithm>
@@ -185,18 +186,21 @@ Start startOf(const Scene& scene, const Body& body, Vec3d p) {
     return start;
 }
 
+bool relaxed(const Scene& scene) { return scene.simulation.placement == StartPlaces::Relaxed; }
+
 // Uniform in [-reach, reach] along each axis that the scene has. The same numbers from every standard library.
 class Jitter {
 public:
-    explicit Jitter(const Scene& scene)
+    Jitter(const Scene& scene, double reach)   // in spacings
         : random_(unsigned(scene.simulation.seed)), dimensions_(scene.simulation.dimensions),
-          reach_(double(scene.simulation.jitter) * double(scene.simulation.spacing)) {}
+          reach_(reach * double(scene.simulation.spacing)) {}
     Vec3d next() {
         Vec3d d{0, 0, 0};
         if (reach_ == 0) return d;
         for (int k = 0; k < dimensions_; ++k) d[k] = reach_ * (2 * (random_() + 0.5) / 4294967296.0 - 1);
         return d;
     }
+    size_t oneOf(size_t count) { return random_() % count; }
 
 private:
     std::mt19937 random_;
@@ -227,9 +231,12 @@ private:
     Vec3d origin_;
 };
 
+// Where a particle begins, relative to domain.min, and of which body it has the rest.
+struct Place { Vec3d at; size_t body; };
+
 // Appends the points of body `b` that are not in an earlier body or a solid.
 void placeBody(const Scene& scene, const std::vector<Lattice>& lattices, size_t b, const SolidSpace& solids, Jitter& jitter,
-               Placement& out) {
+               std::vector<Place>& out) {
     const std::vector<Body>& bodies = scene.fluid.bodies;
     const Vec3d origin = toDouble(scene.domain.min);
     const double halfSpacing = 0.5 * double(scene.simulation.spacing);
@@ -241,13 +248,96 @@ void placeBody(const Scene& scene, const std::vector<Lattice>& lattices, size_t 
                 bool free = contains(bodies[b], l, origin, p, 0) && !solids.takes(p);
                 for (size_t e = 0; e < b && free; ++e)
                     free = !contains(bodies[e], lattices[e], origin, p, halfSpacing);
-                if (!free) continue;
-                const Vec3d place = p + jitter.next();
-                const Start start = startOf(scene, bodies[b], place);
-                out.positions.push_back(toFloat(place));
-                out.velocities.push_back(toFloat(start.velocity));
-                out.pressures.push_back(float(start.pressure));
+                if (free) out.push_back({p + jitter.next(), b});
             }
+}
+
+// The body's shape with its flat sides where its lattice ends, or at a side of the domain that is nearer than half a spacing from there, and far beyond
+// that where the domain is periodic: the fluid goes on there.
+Form fitted(const Scene& scene, const Body& body, const Lattice& l) {
+    const Vec3d size = domainSize(scene), origin = toDouble(scene.domain.min);
+    const double dx = scene.simulation.spacing;
+    Form form = body;
+    for (int k = 0; k < scene.simulation.dimensions; ++k) {
+        const bool ends = body.shape == Shape::Cylinder && k == int(body.axis);
+        if (!isCornered(body) && !ends) continue;
+        double low = l.first[k] - 0.5 * dx, high = low + double(l.n[k]) * dx;
+        if (low < 0.5 * dx) low = 0;
+        if (high > size[k] - 0.5 * dx) high = size[k];
+        if (scene.domain.periodic(k) && low == 0 && high == size[k]) low -= 100 * size[k], high += 100 * size[k];
+        if (ends) form.center[k] = float(origin[k] + 0.5 * (low + high)), form.height = float(high - low);
+        else form.min[k] = float(origin[k] + low), form.max[k] = float(origin[k] + high);
+    }
+    return form;
+}
+
+// Signed distance from a shape's surface at p, relative to domain.min, m: positive outside.
+double distanceFrom(const Scene& scene, const Convex& shape, Vec3d p) {
+    Vec3d at = p + toDouble(scene.domain.min) - shape.middle;
+    if (flat(scene, 2)) at.z = 0;
+    return shape.nearest(at).distance;
+}
+
+// All bodies together, without the solids.
+Region regionOf(const Scene& scene, const std::vector<Lattice>& lattices) {
+    const Vec3d size = domainSize(scene), origin = toDouble(scene.domain.min);
+    const int d = scene.simulation.dimensions;
+    std::vector<Convex> bodies, solids;
+    for (const Solid& solid : scene.solids) solids.push_back(convexOf(solid, d));
+    Region region;
+    region.dimensions = d;
+    region.low = size, region.high = {0, 0, 0};
+    for (size_t b = 0; b < lattices.size(); ++b) {
+        const Form form = fitted(scene, scene.fluid.bodies[b], lattices[b]);
+        bodies.push_back(convexOf(form, d));
+        const Vec3d middle = bodies[b].middle - origin, half = halfExtent(form);
+        for (int k = 0; k < 3; ++k) {
+            region.low[k] = std::max(std::min(region.low[k], middle[k] - half[k]), 0.0);
+            region.high[k] = std::min(std::max(region.high[k], middle[k] + half[k]), size[k]);
+        }
+    }
+    if (d == 2) region.low.z = 0, region.high.z = size.z;
+    // What ends well before a periodic side has air beyond it, all the same.
+    for (int k = 0; k < d; ++k) {
+        const double far = 4 * double(scene.simulation.spacing);
+        region.periodic[k] = scene.domain.periodic(k) && (region.low[k] < far || region.high[k] > size[k] - far);
+        if (region.periodic[k]) region.low[k] = 0, region.high[k] = size[k];
+    }
+    region.inside = [&scene, bodies, solids](Vec3d p, double width) {
+        auto within = [&](const Convex& shape) { return std::clamp(0.5 - distanceFrom(scene, shape, p) / width, 0.0, 1.0); };
+        double share = 0;
+        for (const Convex& body : bodies) share += within(body);
+        share = std::min(share, 1.0);
+        for (const Convex& solid : solids) share = std::min(share, 1 - within(solid));
+        return share;
+    };
+    return region;
+}
+
+// From a random start: up to a spacing away from the lattice along each axis (half a spacing leaves its rows to be seen), but in the region. As many
+// as fit: a lattice in a round body has a few too many or too few.
+void relaxPlaces(const Scene& scene, const std::vector<Lattice>& lattices, std::vector<Place>& places) {
+    const Region region = regionOf(scene, lattices);
+    const double dx = scene.simulation.spacing;
+    Jitter random(scene, 1);
+    auto near = [&](Vec3d at) {
+        for (int tries = 0; tries < 50; ++tries)
+            if (const Vec3d to = at + random.next(); region.inside(to, dx) > 0.5) return to;
+        return at;
+    };
+    const size_t wanted = std::max<size_t>(1, size_t(std::llround(volumeOf(region, dx) / std::pow(dx, region.dimensions))));
+    while (places.size() > wanted) {
+        places[random.oneOf(places.size())] = places.back();
+        places.pop_back();
+    }
+    while (places.size() < wanted) {
+        const Place beside = places[random.oneOf(places.size())];
+        places.push_back(beside);
+    }
+    std::vector<Vec3d> at;
+    for (const Place& place : places) at.push_back(near(place.at));
+    relax(at, region, dx, scene.compute.threads);
+    for (size_t i = 0; i < places.size(); ++i) places[i].at = at[i];
 }
 
 // Appends the particles of a file as they are, in two dimensions in the layer of the others.
@@ -302,11 +392,19 @@ Placement placeParticles(const Scene& scene) {
     out.positions.reserve(expected);
     out.velocities.reserve(expected);
     out.pressures.reserve(expected);
-    Jitter jitter(scene);
+    Jitter jitter(scene, scene.simulation.jitter);
     const SolidSpace solids(scene);
-    for (size_t b = 0; b < lattices.size(); ++b)
-        scene.fluid.bodies[b].shape == Shape::File ? placeFile(scene, scene.fluid.bodies[b], out)
-                                                   : placeBody(scene, lattices, b, solids, jitter, out);
+    std::vector<Place> places;
+    for (size_t b = 0; b < lattices.size(); ++b) placeBody(scene, lattices, b, solids, jitter, places);
+    if (relaxed(scene) && !places.empty()) relaxPlaces(scene, lattices, places);
+    for (const Place& place : places) {
+        const Start start = startOf(scene, scene.fluid.bodies[place.body], place.at);
+        out.positions.push_back(toFloat(place.at));
+        out.velocities.push_back(toFloat(start.velocity));
+        out.pressures.push_back(float(start.pressure));
+    }
+    for (const Body& body : scene.fluid.bodies)
+        if (body.shape == Shape::File) placeFile(scene, body, out);
     if (!out.densities.empty()) out.densities.resize(out.positions.size());
     for (const Solid& solid : scene.solids) {
         const std::vector<Vec3> points = sampleSolid(scene, solid).positions;
@@ -315,6 +413,15 @@ Placement placeParticles(const Scene& scene) {
     }
     if (scene.walls.kind == WallKind::Particles) placeShell(wallShell(scene), out.walls);
     return out;
+}
+
+double relaxedCells(const Scene& scene) {
+    std::vector<Lattice> lattices;
+    for (const Body& body : scene.fluid.bodies) lattices.push_back(bodyLattice(scene, body));
+    const Region region = regionOf(scene, lattices);
+    double cells = 1;
+    for (int k = 0; k < region.dimensions; ++k) cells *= (region.high[k] - region.low[k]) / scene.simulation.spacing;
+    return cells;
 }
 
 FluidExtent extentOf(const Placement& p) {
@@ -364,6 +471,8 @@ ParticleCount countParticles(const Scene& scene) {
         }
         const Lattice l = bodyLattice(scene, body);
         double points = double(l.n[0]) * double(l.n[1]) * double(l.n[2]);
+        // A relaxed block fills the domain up to a side that is half a spacing beyond its last plane.
+        for (int k = 0; k < scene.simulation.dimensions && relaxed(scene); ++k) points *= 1 + 1 / std::max(double(l.n[k]), 1.0);
         if (scene.simulation.dimensions == 2) {
             fluid += points;
             continue;

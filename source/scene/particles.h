@@ -25,7 +25,7 @@ FluidExtent extentOf(const Placement&);
 // points now.
 double soundSpeed(const Scene&, const FluidExtent&);
 
-// Fills the bodies on lattices or from their files, and builds the boundary particles, in an order that depends on the
+// Fills the bodies on lattices, relaxed from there if the scene says so, or from their files, and builds the boundary particles, in an order that depends on the
 // scene only.
 Placement placeParticles(const Scene&);
 
@@ -39,6 +39,9 @@ inline ParticleCount countOf(const Placement& p) { return {int64_t(p.positions.s
 // don't overlap and for the domain's walls, a few per cent too many for round bodies, more for solids. Absurd sizes saturate
 // instead of overflowing. Throws Error (Scene) when a body's file can't be read.
 ParticleCount countParticles(const Scene&);
+
+// How many cells of a spacing's width the box around the bodies has: what relaxed places take time by.
+double relaxedCells(const Scene&);
 
 // Number of lattice planes of a body along an axis (0 x, 1 y, 2 z); 0 means that the body is too
 // thin for a particle.

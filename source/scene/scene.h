@@ -21,6 +21,7 @@ enum class Shape { Block, Sphere, Cylinder, Wedge, File };
 enum class Axis { X, Y, Z };
 enum class ColorBy { Plain, Velocity, Pressure, Density, Acceleration, Id };
 enum class Field { Uniform, TaylorGreen, Stretching, Rotation, Shear };
+enum class StartPlaces { Lattice, Relaxed };
 enum class StartPressure { None, Hydrostatic };
 enum class Face { None, XMin, XMax, YMin, YMax, ZMin, ZMax };
 enum class RangeMode { Frame, Run, Fixed };
@@ -87,8 +88,9 @@ struct SimulationKnobs {
     float support = 2.6f;                       // support radius R / spacing
     Vec3 gravity{0, -9.81f, 0};                 // m/s^2
     float centralRate = 0;                      // 1/s, Omega of a force -Omega^2 r towards the domain's centre
+    StartPlaces placement = StartPlaces::Lattice;   // of the particles in the bodies
     float jitter = 0;                           // random displacement of the start's lattice / spacing, each axis
-    int seed = 1;                               // of the jitter
+    int seed = 1;                               // of the jitter, and of relaxed places
     float accelerationLimit = 0;                // m/s^2, caps the pressure acceleration; 0 = off
 };
 

@@ -38,6 +38,7 @@ constexpr auto enumNames(ColorMap) { return std::array{"viridis", "cividis", "tu
 constexpr auto enumNames(Field) {
     return std::array{"uniform", "taylor_green", "stretching", "rotation", "shear"};
 }
+constexpr auto enumNames(StartPlaces) { return std::array{"lattice", "relaxed"}; }
 constexpr auto enumNames(StartPressure) { return std::array{"none", "hydrostatic"}; }
 constexpr auto enumNames(Face) {
     return std::array{"none", "x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
@@ -211,9 +212,14 @@ void visitPhysics(S& s, Visitor&& visit) {
     visit("simulation.gravity", sim.gravity, Knob{"m/s^2", -100, 100, "gravity"});
     visit("simulation.central_rate", sim.centralRate,
           Knob{"1/s", 0, 1000, "Omega of a pull -Omega^2 r to the domain's centre, 0 = off"});
+    visit("simulation.placement", sim.placement,
+          Knob{"", 0, 0,
+               "lattice: in rows; relaxed: from a random start pushed apart until they fill the bodies evenly up to their "
+               "surfaces, round ones too, in no order: without a lattice's preferred directions and without its first collapse",
+               Restart});
     visit("simulation.jitter", sim.jitter,
-          Knob{"", 0, 0.5f, "random displacement of each particle at the start / spacing", Restart});
-    visit("simulation.seed", sim.seed, Knob{"", 0, 1e9f, "of the jitter", Restart});
+          Knob{"", 0, 0.5f, "random displacement of each particle of the lattice at the start / spacing", Restart});
+    visit("simulation.seed", sim.seed, Knob{"", 0, 1e9f, "of the jitter, and of relaxed places", Restart});
     visit("simulation.acceleration_limit", sim.accelerationLimit,
           Knob{"m/s^2", 0, 1e6f, "caps the pressure acceleration, 0 = off"});
 

@@ -71,6 +71,7 @@ TEST(CheckScene, RefusesNonsenseByPathAndRemedy) {
         {{"output.particles=end.txt"}, "output.particles: \"end.txt\" is of no known kind; name a file that ends in .csv or .h5"},
         {{R"(fluid.bodies=[{"shape":"file","path":"/no/such.csv"}])"}, "fluid.bodies: /no/such.csv: no such file"},
         {{R"(fluid.bodies=[{"shape":"file"}])"}, "no file is named"},
+        {{"simulation.placement=relaxed", "simulation.jitter=0.1"}, "simulation.jitter: moves particles of a lattice"},
         {{"view.range=fixed", "view.range_min=2"},
          "view.range_max: 1 is not above view.range_min 2"},
     };
