@@ -87,6 +87,7 @@ struct SimulationKnobs {
     float spacing = 0.02f;                      // m, initial distance of particles
     float support = 2.6f;                       // support radius R / spacing
     Vec3 gravity{0, -9.81f, 0};                 // m/s^2
+    float gravityRamp = 0;                      // s in which gravity grows from 0, 0 = there at once
     float centralRate = 0;                      // 1/s, Omega of a force -Omega^2 r towards the domain's centre
     StartPlaces placement = StartPlaces::Lattice;   // of the particles in the bodies
     float jitter = 0;                           // random displacement of the start's lattice / spacing, each axis

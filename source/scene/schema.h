@@ -209,7 +209,11 @@ void visitPhysics(S& s, Visitor&& visit) {
     visit("simulation.spacing", sim.spacing,
           Knob{"m", 1e-5f, 10, "initial distance of particles", Restart});
     visit("simulation.support", sim.support, Knob{"", 1, 6, "support radius / spacing", Restart});
-    visit("simulation.gravity", sim.gravity, Knob{"m/s^2", -100, 100, "gravity"});
+    visit("simulation.gravity", sim.gravity, Knob{"m/s^2", -100, 100, "gravity; along a periodic axis the force that drives a channel's flow"});
+    visit("simulation.gravity_ramp", sim.gravityRamp,
+          Knob{"s", 0, 1e4f,
+               "gravity grows from 0 to its full value in this time, without a jerk: for a pool that begins without the pressure "
+               "of its depth; 0 = there at once"});
     visit("simulation.central_rate", sim.centralRate,
           Knob{"1/s", 0, 1000, "Omega of a pull -Omega^2 r to the domain's centre, 0 = off"});
     visit("simulation.placement", sim.placement,

@@ -110,6 +110,7 @@ template <class Kernel> Constants makeConstants(const Scene& s, const FluidExten
     c.eta2 = real(0.01 * h * h);
     c.accelerationLimit = s.simulation.accelerationLimit > 0 ? real(s.simulation.accelerationLimit) : real(1e18);
     c.gravity = toVector(s.simulation.gravity);
+    c.gravityRate = s.simulation.gravityRamp > 0 ? 1 / real(s.simulation.gravityRamp) : 0;
 
     const Vec3 size = s.domain.max - s.domain.min;
     c.centralPull = real(s.simulation.centralRate * s.simulation.centralRate);

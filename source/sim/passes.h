@@ -110,8 +110,9 @@ template <class Kernel, bool sticks, bool dense> struct ExtrapolateToWalls {
     using R = Real<Group>;
     View v;
     HD void operator()(Group b) const {
+        const Vector<real> gravity = gravityNow(v);
         const Vector<R> x = load(v.walls.position, b);
-        const Vector<R> force = bodyForce(v.c, x);
+        const Vector<R> force = bodyForce(v.c, gravity, x);
         Vector<R> out;
         if constexpr (sticks) out = load(v.walls.outward, b);
         R pressure = 0, weight = 0, apart = 0;
@@ -170,6 +171,7 @@ template <class Kernel, Lists lists, class... Terms> struct ComputeForces<Kernel
     static constexpr unsigned needs = TermList<Terms...>::needs;
     View v;
     HD void operator()(Group i) const {
+        const Vector<real> gravity = gravityNow(v);
         const Vector<R> x = load(v.fluid.position, i);
         const State<R> own = loadState<needs>(v.fluid, i);
         Acceleration<R> a{};
@@ -187,7 +189,7 @@ template <class Kernel, Lists lists, class... Terms> struct ComputeForces<Kernel
             pressure = -own.inverseDensity * (correction.inverse * pressure);
             other = correction.perTrace * other;
         }
-        store(v.fluid.acceleration, i, limited(pressure) + other + bodyForce(v.c, x));
+        store(v.fluid.acceleration, i, limited(pressure) + other + bodyForce(v.c, gravity, x));
     }
     HD Vector<R> limited(Vector<R> a) const {
         const R limit = v.c.accelerationLimit;
@@ -202,9 +204,10 @@ template <class Kernel> struct ComputeDensityRate {
     using R = Real<Group>;
     View v;
     HD void operator()(Group i) const {
+        const Vector<real> gravity = gravityNow(v);
         const Vector<R> x = load(v.fluid.position, i), u = load(v.fluid.velocity, i);
         const R rho = load(v.fluid.density, i), diffusion = v.c.diffusion;
-        const Vector<R> slope = R(v.c.restDensity / (v.c.soundSpeed * v.c.soundSpeed)) * bodyForce(v.c, x);
+        const Vector<R> slope = R(v.c.restDensity / (v.c.soundSpeed * v.c.soundSpeed)) * bodyForce(v.c, gravity, x);
         R sum = 0;
         forNeighbours<Lists::Pruned>(v, v.fluidNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
             const R approach = rho * dot(u - load(v.fluid.velocity, j), p.r);

@@ -103,6 +103,7 @@ struct Constants {
     real eta2;                                    // 0.01 h^2, keeps 1/d^2 finite
     real accelerationLimit;                       // m/s^2
     Vector<real> gravity;                         // m/s^2
+    real gravityRate;                             // 1/s, how fast it grows from 0; 0: it is there at once
     real centralPull;                             // 1/s^2, Omega^2 of -Omega^2 (x - center)
     Vector<real> center;                          // m
     Vector<real> slidesBelow, slidesAbove;        // m: boundary particles below or above these slide with
@@ -141,9 +142,17 @@ struct View {
     StepState* state;
 };
 
+// m/s^2, at the run's time, which is on the device: a recorded step needs no new constants while it grows. Passes ask first of all: a branch among
+// their sums would keep the compiler from fusing multiplications with additions, and change bits.
+HD inline Vector<real> gravityNow(const View& v) {
+    if (v.c.gravityRate <= 0) return v.c.gravity;
+    const real s = min(real(v.state->time) * v.c.gravityRate, real(1)), share = s * s * (real(3) - real(2) * s);
+    return {share * v.c.gravity.x, share * v.c.gravity.y, share * v.c.gravity.z};
+}
+
 // What pulls at every particle, m/s^2.
-template <class R> HD inline Vector<R> bodyForce(const Constants& c, Vector<R> x) {
-    const Vector<R> gravity{c.gravity.x, c.gravity.y, c.gravity.z}, center{c.center.x, c.center.y, c.center.z};
+template <class R> HD inline Vector<R> bodyForce(const Constants& c, Vector<real> gravityNow, Vector<R> x) {
+    const Vector<R> gravity{gravityNow.x, gravityNow.y, gravityNow.z}, center{c.center.x, c.center.y, c.center.z};
     return subtractScaled(gravity, R(c.centralPull), x - center);
 }
 

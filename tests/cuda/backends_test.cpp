@@ -97,6 +97,19 @@ TEST_P(Backends, TwoRunsAreTheSameBits) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Backends, testing::ValuesIn(Scenes));
 
+// The ramp's time is read on the device: the recorded step stays the same one.
+TEST(GravityRamp, GrowsInRecordedSteps) {
+    NEED_GPU();
+    Scene scene = testScene("dam_break_small.json");
+    scene.simulation.gravityRamp = 0.05f;
+    auto cpu = onCpu(scene, placeParticles(scene)), gpu = onGpu(scene, placeParticles(scene));
+    while (cpu->measure().time < 0.04) cpu->step(), gpu->step();
+    const double full = 9.81 * cpu->measure().time;   // m/s, of a free fall without a ramp
+    EXPECT_GT(cpu->measure().kineticEnergy, 0);
+    EXPECT_LT(gpu->measure().maxSpeed, full);
+    EXPECT_NEAR(gpu->measure().kineticEnergy, cpu->measure().kineticEnergy, 1e-3 * cpu->measure().kineticEnergy);
+}
+
 TEST(Switching, KeepsEveryBitHundredTimes) {
     NEED_GPU();
     const Scene scene = testScene("dam_break_small.json");

@@ -74,6 +74,31 @@ TEST(Particle, OneIsWhatAllSay) {
     }
 }
 
+// v = g integral of s^2 (3 - 2 s), s = t / T: g T (s^3 - s^4 / 2), from T on g (t - T / 2). It goes on from a state as if nothing had been.
+TEST(Gravity, GrowsSmoothlyOverItsRamp) {
+    for (Precision precision : {Precision::Float, Precision::Double}) {
+        Scene scene = calm();
+        scene.domain.max = {1, 100, 1};
+        scene.simulation.gravity = {0, 9.81f, 0};
+        scene.simulation.gravityRamp = 0.4f;
+        scene.time.mode = TimeMode::Fixed;
+        scene.time.step = 0.001f;
+        Placement one;
+        one.positions = {{0.5f, 0.5f, 0.5f}}, one.velocities = {{0, 0, 0}};
+        auto make = [&](const RunState& from) {
+            return precision == Precision::Float ? makeSimdSimulation(scene, from, 1) : makeDoubleSimulation(scene, from, 1);
+        };
+        auto simulation = make(RunState(one));
+        for (int steps = 100; steps <= 600; steps += 100) {
+            simulation->step(100);
+            const double T = 0.4, t = 0.001 * steps, s = t / T;
+            const double exact = 9.81 * (s < 1 ? T * (s * s * s - s * s * s * s / 2) : t - T / 2);
+            EXPECT_NEAR(simulation->particles()[0].velocity.y, exact, 0.001 * 9.81 + 1e-4 * exact) << t;
+            if (steps == 200) simulation = make(simulation->state());
+        }
+    }
+}
+
 TEST(Box, NobodyLeavesAndRestitutionHolds) {
     Scene scene = calm();
     scene.walls.restitution = 0.5f;
