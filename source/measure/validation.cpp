@@ -349,6 +349,15 @@ double integral(const std::vector<double>& t, const std::vector<double>& p, doub
     return sum;
 }
 
+double meanOf(const std::vector<double>& t, const std::vector<double>& p, double from, double to) {
+    return integral(t, p, from, to) / (to - from);
+}
+// When p first exceeds `threshold`.
+double arrivalOf(const std::vector<double>& t, const std::vector<double>& p, double threshold) {
+    const auto hit = std::find_if(p.begin(), p.end(), [&](double v) { return v > threshold; });
+    return hit == p.end() ? NaN : t[size_t(hit - p.begin())];
+}
+
 void runImpact(const Scene& scene, ValidationRun& run, const std::string& data) {
     const Table experiment = readTable(data + "/lobovsky2014_H300_pressure.csv"), peaks = readTable(data + "/lobovsky2014_H300_peak_pressures.csv");
     const double H = 0.3, g = -scene.simulation.gravity.y, rho0 = scene.fluid.restDensity, Latest = 4;
@@ -365,8 +374,7 @@ void runImpact(const Scene& scene, ValidationRun& run, const std::string& data) 
     }
     const std::vector<double>& te = experiment.at("t_star");
     const double impulse = integral(t, p[0], 2.4, Latest), measured = integral(te, experiment.at(Columns[0]), 2.4, Latest);
-    const auto hit = std::find_if(p[0].begin(), p[0].end(), [](double v) { return v > 0.5; });
-    const double arrival = hit == p[0].end() ? NaN : t[size_t(hit - p[0].begin())];
+    const double arrival = arrivalOf(t, p[0], 0.5);
     run.metrics = {{"impulse at S1, 2.4 < t* < 4", "%", 100 * (impulse / measured - 1), targetAt(run.resolution, 80, 10.0)},
                    {"arrival at S1, t* - 2.44", "", arrival - 2.44, targetAt(run.resolution, 80, 0.1)}};
     run.chart = {"", "t sqrt(g / H)", "p / (rho g H)", {}};
@@ -384,6 +392,59 @@ void runImpact(const Scene& scene, ValidationRun& run, const std::string& data) 
         run.chart.curves.push_back({fmt::format("S{}", s + 1), t, smooth, Curve::Line});
         run.chart.curves.push_back(theirs);
     }
+}
+
+// --- C14 dam break with a box ---
+
+void runKleefsman(const Scene& scene, ValidationRun& run, const std::string& data) {
+    const Table experiment = readTable(data + "/kleefsman2005_dam_break.csv");
+    const double end = 6, depth = 0.55, interval = scene.output.sampleEvery;
+    const Probes probes(scene);
+    std::vector<double> t;
+    std::map<std::string, std::vector<double>> ours;
+    Stepping sim(scene, run);
+    for (int k = 0; k * interval <= end && !run.diverged; ++k) {
+        sim.until(k * interval);
+        t.push_back(sim.time());
+        const std::vector<double> readings = probes.read(sim->particles());
+        for (const char* p : {"P1", "P3", "P5", "P7"}) ours[p].push_back(readings[probes.column(std::string(p) + ".pressure")]);
+        for (const char* h : {"H2", "H4"}) ours[h].push_back(readings[probes.column(std::string(h) + ".height")]);
+    }
+    const std::vector<double>& te = experiment.at("t_s");
+    const bool judged = run.resolution >= 30;
+    auto target = [&](double value) { return judged ? std::optional(value) : std::nullopt; };
+    run.chart = {"", "t, s", "water height, m; pressure, 20 kPa", {}};
+    for (const char* h : {"H2", "H4"}) {
+        const std::vector<double>& measured = experiment.at(std::string(h) + "_m");
+        double sum = 0;
+        for (size_t i = 0; i < t.size(); ++i) sum += std::abs(ours[h][i] - valueAt(te, measured, t[i])) / depth / double(t.size());
+        run.metrics.push_back({std::string("water height ") + h + ", mean error / H", "%", 100 * sum, target(8)});
+        run.chart.curves.push_back({h, t, ours[h], Curve::Line});
+        run.chart.curves.push_back({std::string(h) + " measured", te, measured, Curve::Dashed});
+    }
+    for (const char* p : {"P1", "P3"}) {
+        const bool first = p == std::string("P1");
+        const std::vector<double>& measured = experiment.at(std::string(p) + "_Pa");
+        const double late = arrivalOf(t, ours[p], 500) - arrivalOf(te, measured, 500);
+        const std::vector<double> smooth = runningMean(t, ours[p], 0.005), theirs = runningMean(te, measured, 0.005);
+        auto peak = [](const std::vector<double>& at, const std::vector<double>& values) {
+            double most = 0;
+            for (size_t i = 0; i < at.size(); ++i)
+                if (at[i] > 0.39 && at[i] < 0.6) most = std::max(most, values[i]);
+            return most;
+        };
+        run.metrics.push_back({std::string("arrival at ") + p, "ms", 1000 * late, first ? target(30) : std::nullopt});
+        run.metrics.push_back({std::string("impulse at ") + p + ", 0.39 < t < 1.2 s", "%",
+                               100 * (integral(t, ours[p], 0.39, 1.2) / integral(te, measured, 0.39, 1.2) - 1), first ? target(15) : std::nullopt});
+        run.metrics.push_back({std::string("smoothed peak at ") + p, "%", 100 * (peak(t, smooth) / peak(te, theirs) - 1), {}});
+        std::vector<double> scaled = smooth, scaledTheirs = theirs;
+        for (auto* values : {&scaled, &scaledTheirs})
+            for (double& v : *values) v /= 20000;
+        if (first) run.chart.curves.push_back({p, t, scaled, Curve::Line}), run.chart.curves.push_back({"P1 measured", te, scaledTheirs, Curve::Dashed});
+    }
+    for (const char* p : {"P5", "P7"})
+        run.metrics.push_back({std::string("mean of ") + p + ", 1.2 < t < 2.5 s", "Pa off",
+                               meanOf(t, ours[p], 1.2, 2.5) - meanOf(te, experiment.at(std::string(p) + "_Pa"), 1.2, 2.5), {}});
 }
 
 // --- C18 conservation ---
@@ -464,6 +525,8 @@ std::vector<ValidationCase> validationCases(const std::string& data) {
          {20}, spacing, [data](const Scene& s, ValidationRun& r) { runFront(s, r, data); }},
         {"dam_break_pressure", "Dam-break pressures, H = 0.3 m", "dam_break_pressure", "Lobovsky et al. 2014", "H / dx", {40, 80, 160}, {},
          [](Scene& s, int n) { s.simulation.spacing = 0.3f / float(n); }, [data](const Scene& s, ValidationRun& r) { runImpact(s, r, data); }},
+        {"kleefsman", "Dam break with a box, three dimensions", "kleefsman", "Kleefsman et al. 2005", "0.55 m / dx", {15, 30}, {},
+         [](Scene& s, int n) { s.simulation.spacing = 0.55f / float(n); }, [data](const Scene& s, ValidationRun& r) { runKleefsman(s, r, data); }},
         {"conservation", "Conservation in a periodic box, 10,000 steps, delta_sph", "taylor_green", "momentum and energy", "L / dx", {64}, {32},
          [](Scene& s, int n) { spacing(s, n), s.simulation.formulation = Formulation::DeltaSph, s.fluid.viscosity = 0; }, runConservation},
     };

@@ -43,6 +43,8 @@ TEST_F(Restart, SolidsGoOnFromWhereTheyAre) {
     ASSERT_EQ(call("half.h5 --headless --quiet --threads 1 --time 0.15 --checkpoint rest.h5").code, 0);
     expectSame(read("whole.h5"), read("rest.h5"));
     EXPECT_EQ(read("rest.h5").state.particles.solidSizes.size(), 3u);
+}
+
 // The end of a run as the start of another one; a checkpoint of that has its own particles and needs the file no more.
 TEST_F(Restart, ParticlesOfOneRunBeginAnother) {
     const std::string tank = "dam_break --headless --backend cpu --quiet --set simulation.spacing=0.04 --set simulation.formulation=delta_sph ";
