@@ -63,12 +63,14 @@ TEST(Probes, LinearFieldsExactlyAlsoAtTheFloorAndOverASensor) {
         const Scene scene = poolScene(dimensions, R"([{"name":"floor","position":[1.5,2,3.2],"order":"linear"},
             {"name":"disc","position":[2,2.2,3.2],"radius":0.05,"order":"linear"},
             {"name":"ball","position":[1.5,2.2,3.2],"radius":0.05,"order":"linear"},
+            {"name":"corner","position":[2,2.01,3.2],"radius":0.03,"order":"linear"},
             {"kind":"line","name":"line","from":[1.1,2.1,3.2],"to":[1.9,2.3,3.2],"count":3,"order":"linear"}])");
         EXPECT_NEAR(reading(scene, "floor.pressure"), pressureAt({1.5, 2, 0}), 1e-2);
         EXPECT_NEAR(reading(scene, "floor.density"), 1002, 1e-4);
         EXPECT_NEAR(reading(scene, "floor.velocity_x"), 2, 1e-5);
         EXPECT_NEAR(reading(scene, "floor.velocity_z"), -1.5, 1e-5);
         EXPECT_NEAR(reading(scene, "disc.pressure"), pressureAt({2, 2.2, 0}), 1e-2) << "points beyond the wall count";
+        EXPECT_NEAR(reading(scene, "corner.pressure"), pressureAt({2, 2.02, 0}), 1e-2) << "points below the floor count";
         EXPECT_NEAR(reading(scene, "ball.pressure"), pressureAt({1.5, 2.2, 0}), 1e-2);
         EXPECT_NEAR(reading(scene, "line[2].pressure"), pressureAt({1.9, 2.3, 0}), 1e-2);
     }
