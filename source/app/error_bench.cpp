@@ -23,7 +23,7 @@ struct Variant { std::string name; std::vector<std::pair<std::string, std::strin
 
 std::vector<Variant> variants() {
     std::vector<Variant> all{{"as shipped", {}}};
-    for (const char* f : {"wcsph", "delta_sph", "transport_velocity"}) all.push_back({f, {{"simulation.formulation", f}}});
+    for (const char* f : {"wcsph", "delta_sph", "delta_plus", "transport_velocity"}) all.push_back({f, {{"simulation.formulation", f}}});
     for (const char* r : {"2", "2.3", "3", "3.5"}) all.push_back({fmt::format("R = {} dx", r), {{"simulation.support", r}}});
     all.push_back({"cubic spline", {{"simulation.kernel", "cubic_spline"}}});
     for (const char* c : {"0.2", "0.4", "0.8", "1"}) all.push_back({fmt::format("cfl {}", c), {{"time.cfl", c}}});

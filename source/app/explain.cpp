@@ -30,6 +30,7 @@ const char* describe(Formulation f) {
     switch (f) {
         case Formulation::Wcsph: return "weakly compressible";
         case Formulation::DeltaSph: return "delta-SPH";
+        case Formulation::DeltaPlus: return "delta+-SPH";
         case Formulation::TransportVelocity: return "transport velocity";
         case Formulation::Classic: return "classic";
     }

@@ -188,7 +188,7 @@ void addViolent(const char* f, std::vector<StressCase>& out) {
 
 std::vector<StressCase> tortures(bool full) {
     std::vector<StressCase> out;
-    for (const char* f : {"wcsph", "delta_sph"}) addViolent(f, out);
+    for (const char* f : {"wcsph", "delta_sph", "delta_plus"}) addViolent(f, out);
     const std::vector<std::string> tv{"simulation.dimensions=2", "simulation.spacing=0.03", "simulation.gravity=0,0,0", "fluid.rest_density=1",
                                       "fluid.equation_of_state=linear", "domain.max=0.99,0.99,1",
                                       R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.99,0.99,1]}])"};
@@ -224,7 +224,7 @@ StressCase randomCase(uint64_t seed) {
         s.name = fmt::format("random {}", seed);
         s.compute.backend = Backend::Cpu;
         s.simulation.dimensions = oneIn(3) ? 2 : 3;
-        s.simulation.formulation = oneIn(2) ? Formulation::Wcsph : Formulation::DeltaSph;
+        s.simulation.formulation = Formulation(random() % 3);   // those with free surfaces
         s.simulation.kernel = oneIn(4) ? Kernel::CubicSpline : Kernel::WendlandC2;
         const double scale = logarithmic(0.01, 10);   // m
         const Vec3 size{between(0.6, 1.6), between(0.6, 1.6), between(0.6, 1.6)};

@@ -229,7 +229,7 @@ void runDrop(const Scene& scene, ValidationRun& run) {
         double xx = 0, yy = 0;
         for (const Particle& p : particles) xx += p.position.x * p.position.x, yy += p.position.y * p.position.y;
         const double n = double(particles.size()), a = 2 * std::sqrt(xx / n), excess = a - 2 * std::sqrt(yy / n);
-        if (k > 0 && before < 0 && excess >= 0)
+        if (k > PerPeriod / 2 && before < 0 && excess >= 0)   // at the start the drop is round but for its last digits
             crossings.push_back(timeBefore + (m.time - timeBefore) * before / (before - excess));
         before = excess, timeBefore = m.time;
         if (k <= 3 * PerPeriod) axisSum += std::pow(a - exact.a, 2), ++axisCount;

@@ -84,7 +84,7 @@ void checkFills(const Scene& scene, ParticleCount count) {
     const double filled = double(count.fluid) * dx * dx * dx / (size.x * size.y * depth);
     if (filled < 0.9)
         refuse("simulation.formulation",
-               fmt::format("transport_velocity has no free surfaces, and fluid fills {:.0f} % of the domain; use delta_sph "
+               fmt::format("transport_velocity has no free surfaces, and fluid fills {:.0f} % of the domain; use delta_plus "
                            "or wcsph, or fill it", 100 * filled));
 }
 
@@ -310,7 +310,7 @@ int64_t estimateMemory(const Scene& scene, ParticleCount count) {
 int64_t estimateGpuMemory(const Scene& scene, ParticleCount count) {
     const double fluid = double(count.fluid), walls = double(count.walls);
     const double more = (carriesDensity(scene) ? GpuBytesPerCarried : 0) +
-                        (scene.simulation.formulation == Formulation::TransportVelocity ? GpuBytesPerShifted : 0);
+                        (shiftsParticles(scene) ? GpuBytesPerShifted : 0);
     const double bytes = (GpuBytesPerParticle + more) * fluid + GpuBytesPerWall * walls +
                          GpuBytesPerCell * mostCells(scene, fluid + walls) + GpuBytesAnyway;
     return int64_t(std::min(bytes, 9e18));

@@ -369,8 +369,12 @@ float particleMass(const Scene& scene) {
 }
 
 bool carriesDensity(const Scene& scene) {
+    return scene.simulation.formulation == Formulation::DeltaSph || shiftsParticles(scene);
+}
+
+bool shiftsParticles(const Scene& scene) {
     const Formulation f = scene.simulation.formulation;
-    return f == Formulation::DeltaSph || f == Formulation::TransportVelocity;
+    return f == Formulation::DeltaPlus || f == Formulation::TransportVelocity;
 }
 
 int64_t latticePlanes(const Scene& scene, const Body& body, int axis) {

@@ -12,7 +12,7 @@ namespace spindrift {
 enum class Backend { Auto, Cpu, Cuda };
 enum class Precision { Float, Double };
 enum class Simd { Auto, Avx512, Avx2, Sse };
-enum class Formulation { Wcsph, DeltaSph, TransportVelocity, Classic };
+enum class Formulation { Wcsph, DeltaSph, DeltaPlus, TransportVelocity, Classic };
 enum class Kernel { WendlandC2, CubicSpline };
 enum class EquationOfState { Tait, Linear };
 enum class WallKind { Reflect, Particles };
@@ -118,7 +118,7 @@ struct Fluid {
     float viscosity = 0.001f;                   // Pa s, dynamic (Morris 1997); classic: its own coefficient
     float artificialViscosity = 0.05f;          // alpha of Monaghan 1992
     float densityDiffusion = 0.1f;              // delta of Molteni & Colagrossi 2009, where density is carried
-    float shifting = 1;                         // share of Sun 2019's particle shifting, transport_velocity only
+    float shifting = 1;                         // share of Sun 2019's particle shifting, delta_plus and transport_velocity
     EquationOfState equationOfState = EquationOfState::Tait;
     int gamma = 7;                              // Tait exponent
     float stiffness = 0;                        // Pa, pressure scale k of p = k((rho/rho0)^gamma - 1); 0 = rho0 c^2/gamma
@@ -199,5 +199,7 @@ float supportRadius(const Scene&);              // m
 float particleMass(const Scene&);               // kg; in two dimensions of a slab one spacing thick
 // Whether density follows the continuity equation from step to step, instead of being summed up anew.
 bool carriesDensity(const Scene&);
+// Whether particles move a little beside the fluid, to stay evenly spread.
+bool shiftsParticles(const Scene&);
 
 }  // namespace spindrift

@@ -23,7 +23,7 @@ constexpr auto enumNames(Backend) { return std::array{"auto", "cpu", "cuda"}; }
 constexpr auto enumNames(Precision) { return std::array{"float", "double"}; }
 constexpr auto enumNames(Simd) { return std::array{"auto", "avx512", "avx2", "sse"}; }
 constexpr auto enumNames(Formulation) {
-    return std::array{"wcsph", "delta_sph", "transport_velocity", "classic"};
+    return std::array{"wcsph", "delta_sph", "delta_plus", "transport_velocity", "classic"};
 }
 constexpr auto enumNames(Kernel) { return std::array{"wendland_c2", "cubic_spline"}; }
 constexpr auto enumNames(EquationOfState) { return std::array{"tait", "linear"}; }
@@ -200,7 +200,7 @@ void visitPhysics(S& s, Visitor&& visit) {
     visit("simulation.formulation", sim.formulation,
           Knob{"", 0, 0,
                "wcsph: density by summation, rugged; delta_sph: density carried and diffused, smooth "
-               "pressure; transport_velocity: second order, for flows that fill the domain; classic: "
+               "pressure; delta_plus: the same with shifted particles, loses little energy; transport_velocity: second order, for flows that fill the domain; classic: "
                "the historical one",
                Restart});
     visit("simulation.dimensions", sim.dimensions,
@@ -268,9 +268,9 @@ void visitFluid(S& s, Visitor&& visit) {
     visit("fluid.artificial_viscosity", f.artificialViscosity,
           Knob{"", 0, 2, "alpha of Monaghan's artificial viscosity, 0 = off"});
     visit("fluid.density_diffusion", f.densityDiffusion,
-          Knob{"", 0, 1, "delta of delta_sph and transport_velocity, 0 = off"});
+          Knob{"", 0, 1, "delta where density is carried, 0 = off"});
     visit("fluid.shifting", f.shifting,
-          Knob{"", 0, 4, "strength of particle shifting, transport_velocity only, 0 = off"});
+          Knob{"", 0, 4, "strength of particle shifting, delta_plus and transport_velocity, 0 = off"});
     visit("fluid.equation_of_state", f.equationOfState,
           Knob{"", 0, 0, "pressure from density", Restart});
     visit("fluid.gamma", f.gamma, Knob{"", 1, 10, "exponent of the Tait equation"});

@@ -149,7 +149,7 @@ private:
         addPass("walls", wallPass<K>(), Initial::Yes, whyNoWallPressure());
         addPass("forces", forcePass<K>(), Initial::Yes);
         noteTerms(OptionalTerms{});
-        addPass("extremes", shifts() ? &S::findExtremes<true> : &S::findExtremes<false>, Initial::No,
+        addPass("extremes", fillsSpace() ? &S::findExtremes<true> : &S::findExtremes<false>, Initial::No,
                 keepsLists || shifts() || constants_.fixedStep <= 0 ? "" : "the time step is fixed (time.mode)");
         addPass("time step", &S::chooseTimeStep);
         addPass("stir", &S::template onFluid<StirFluid>, Initial::No, stir_.radius > 0 ? "" : "nobody stirs");
@@ -158,8 +158,9 @@ private:
         } else {
             addPass("kick", &S::template onFluid<Integrate<Kick>>);
             addPass(shifts() ? "transport" : "density rate", ratePass<K>());
-            addPass("drift", shifts() ? &S::template onFluid<Integrate<Drift | DriftDensity | DriftShifted>>
-                                      : &S::template onFluid<Integrate<Drift | DriftDensity>>);
+            addPass("drift", fillsSpace() ? &S::template onFluid<Integrate<Drift | DriftDensity | DriftShifted | KeepVolume>>
+                             : shifts()   ? &S::template onFluid<Integrate<Drift | DriftDensity | DriftShifted>>
+                                          : &S::template onFluid<Integrate<Drift | DriftDensity>>);
         }
         addPass("solid collisions", &S::template onFluid<KeepOutOfSolids>, Initial::No, solids_.count() > 0 ? "" : "there are no solids");
         measureLoads_ = loadPass<K>();
@@ -179,7 +180,7 @@ private:
     }
     // The first pass over the fluid's neighbours in a step prunes the lists.
     template <class K> PassFunction forcePass() const {
-        if (shifts())
+        if (fillsSpace())
             return *LaminarViscosity::skipped(scene_) ? forces<K, Lists::Prune>(TermList<CorrectedPressureForce>{})
                                                       : forces<K, Lists::Prune>(TermList<CorrectedPressureForce, LaminarViscosity>{});
         if (carriesDensity(scene_))
@@ -195,9 +196,12 @@ private:
                            TermList<PressureForce>{}, TermList<LaminarViscosity, ArtificialViscosity>{});
     }
     template <class K> PassFunction ratePass() const {
-        return shifts() ? &SimulationOn::template onFluid<ComputeTransport<K>> : &SimulationOn::template onFluid<ComputeDensityRate<K>>;
+        if (fillsSpace()) return &SimulationOn::template onFluid<ComputeTransport<K, false>>;
+        return shifts() ? &SimulationOn::template onFluid<ComputeTransport<K, true>>
+                        : &SimulationOn::template onFluid<ComputeDensityRate<K>>;
     }
-    bool shifts() const { return scene_.simulation.formulation == Formulation::TransportVelocity; }
+    bool shifts() const { return shiftsParticles(scene_); }
+    bool fillsSpace() const { return scene_.simulation.formulation == Formulation::TransportVelocity; }
     bool fluidSticks() const { return wallsCarryPressure() && !*LaminarViscosity::skipped(scene_); }
     template <class... Ts> void noteTerms(TermList<Ts...>) {
         (rows_.push_back({std::string("forces: ") + Ts::name, Ts::skipped(scene_)}), ...);
