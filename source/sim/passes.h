@@ -147,7 +147,7 @@ template <class Kernel, bool sticks, bool dense> struct ExtrapolateToWalls {
 // or lie in a plane, nothing is corrected.
 template <class R> struct Correction {
     Symmetric<R> inverse;   // of M
-    R determinant;          // of M: 1 with neighbours all around, about a half at a flat surface
+    R determinant;          // of M: 1 with neighbours all around, about a third at a flat surface
     R perTrace;             // d / trace of M
     HD Correction(const Constants& c, const Symmetric<R>& sums) {
         const R scale = -c.gradientScale;
@@ -234,9 +234,10 @@ template <class Kernel> struct ComputeDensityRate {
 // Gradients are corrected. The Laplacians of density and (in the forces) velocity lose what linear fields add on uneven neighbours, 2 S.grad f
 // with S = sum_j V_j grad W. Walls take part with their own velocity, not with the one that viscosity sees (Adami 2012): with that one,
 // the error of cavity flow at Re = 100, 50 particles across, is 1.1 % instead of 0.23 %.
-// With a free `surface` particles are shifted along it only, and div u is the plain sum, which pressure forces in pairs go with: what they
-// take from motion is in compression then. Shifting changes the room of a particle, not its mass: Sun 2019 takes rho div du as the
-// difference of its two discrete forms, 2 rho du.S. (Without it, drops grow by 1 % a period.)
+// With a free `surface`, which the determinant of the moments tells (Sun 2019: their smallest eigenvalue), particles there are shifted along it
+// only and carry nothing, and those with hardly a neighbour are not shifted: gradients are poor there, and splashes gained energy. div u is the
+// plain sum, which pressure forces in pairs go with: what they take from motion is in compression then. Shifting changes the room of a
+// particle, not its mass: Sun 2019 takes rho div du as the difference of its two discrete forms, 2 rho du.S. (Without it, drops grow by 1 % a period.)
 template <class Kernel, bool surface> struct ComputeTransport {
     using Index = Group;
     using R = Real<Group>;
@@ -287,23 +288,30 @@ template <class Kernel, bool surface> struct ComputeTransport {
         const Vector<R> uneven = (two * correction.perTrace * scale) * total(s.uneven);
         const Vector<R> inward = scale * total(s.uneven);
         Vector<R> wanted = (R(-v.c.shifting * real(v.state->speed)) * scale) * total(s.shift);
-        if constexpr (surface) wanted = alongSurface(wanted, inward, correction.determinant);
+        R inside = 1;
+        if constexpr (surface) {
+            inside = between(real(0.6), real(0.85), correction.determinant);
+            wanted = between(real(0.2), real(0.35), correction.determinant) * alongSurface(wanted, inward, inside);
+        }
         const Vector<R> shift = limitedShift(wanted);
         // Half of `laminar` is the viscosity, of `diffusion` the diffusion's.
         const R half = real(0.5), nu = surface ? R(0) : half * R(v.c.laminar) * load(v.fluid.inverseDensity, i);
-        const Vector<R> along = subtractScaled(shift, nu, uneven);
+        const Vector<R> along = subtractScaled(inside * shift, nu, uneven);
         const R diffused = surface ? two * scale * total(s.laplacian)
                                    : two * correction.perTrace * scale * total(s.laplacian) - dot(uneven, gradRho);
         const R divergence = surface ? scale * total(s.u.x + s.v.y + s.w.z) - two * dot(shift, inward) : gradU.x + gradV.y + gradW.z;
-        const R rate = dot(shift, gradRho) - rho * divergence;
+        const R rate = inside * dot(shift, gradRho) - rho * divergence;
         store(v.fluid.densityRate, i, mulAdd(half * R(v.c.diffusion), diffused, rate));
         store(v.fluid.shiftVelocity, i, shift);
         store(v.fluid.shiftAcceleration, i, Vector<R>{dot(along, gradU), dot(along, gradV), dot(along, gradW)});
     }
-    // Where neighbours are missing, in the direction of `inward` = S, the shift loses its part along it (Sun 2019, with the determinant of the moments in
-    // place of their smallest eigenvalue). Who is all but alone is not shifted: his shift points along S.
-    HD static Vector<R> alongSurface(Vector<R> shift, Vector<R> inward, R determinant) {
-        const R t = min(max((determinant - R(real(0.6))) * R(real(4)), R(0)), R(1)), inside = t * t * (R(3) - R(2) * t);
+    // 0 below `low`, 1 above `high`, smooth in between.
+    HD static R between(real low, real high, R value) {
+        const R t = min(max((value - R(low)) * R(1 / (high - low)), R(0)), R(1));
+        return t * t * (R(3) - R(2) * t);
+    }
+    // Where neighbours are missing the shift loses its part along S, which points inward (Sun 2019).
+    HD static Vector<R> alongSurface(Vector<R> shift, Vector<R> inward, R inside) {
         const R across = dot(shift, inward) / max(dot(inward, inward), R(real(1e-20)));
         return subtractScaled(shift, (R(1) - inside) * across, inward);
     }
