@@ -94,11 +94,13 @@ public:
         rows_ = !output.csv.empty() || !output.json.empty() || !output.hdf5.empty();
         sampling_ = rows_ || !output.frames.empty();
         simulation_ = startSimulation(scene_, start.state);
+        guard_.emplace(*simulation_, scene_);
     }
 
     int run() {
         try {
             now_ = simulation_->measure();
+            first_ = now_.steps;
             if (checkpointsByTime()) nextCheckpoint_ = after(now_.time, scene_.output.checkpointEvery);
             sample();
             while (!done() && trouble_.empty() && stopSignal == 0) advance();
@@ -129,18 +131,38 @@ private:
     void advance() {
         const auto start = std::chrono::steady_clock::now();
         simulation_->step();
-        ++steps_;
+        ++steps_, ++made_;
         // The time is known from a measurement only, and the ends of run and frame depend on it.
-        const bool look = sampling_ || scene_.output.time > 0 || checkpointsByTime() || steps_ % HealthInterval == 0;
+        const bool look = sampling_ || scene_.output.time > 0 || checkpointsByTime() || steps_ % HealthInterval == 0 ||
+                          steps_ == scene_.compute.steps;
         if (look) simulation_->wait();
         stepSeconds_ +=
             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         if (!look) return;
         now_ = simulation_->measure();
-        trouble_ = divergence(scene_, now_);
+        lookAfterIt();
         if (sampling_ && trouble_.empty()) sample();
         if (checkpointsByTime() && trouble_.empty() && now_.time >= nextCheckpoint_) saveCheckpoint();
         if (progress_.due()) progress_.show(share(), describe());
+    }
+
+    // Trouble that shorter steps can't help ends the run; what was written since the state that it goes back to is forgotten.
+    void lookAfterIt() {
+        const HealthGuard::Finding found = guard_->look(now_);
+        if (found == HealthGuard::Finding::GaveUp) {
+            trouble_ = guard_->said();
+        } else if (!guard_->said().empty()) {
+            progress_.clear();
+            fmt::print(stderr, "spindrift: {}\n", guard_->said());
+        }
+        if (found != HealthGuard::Finding::WentBack) return;
+        steps_ = now_.steps - first_;
+        series_.dropAfter(now_.time);
+        while (!frameTimes_.empty() && frameTimes_.back() > now_.time) frameTimes_.pop_back();
+        lastRow_ = std::min(lastRow_, steps_);
+        nextRow_ = std::min(nextRow_, after(now_.time, rowInterval()));
+        nextFrame_ = std::min(nextFrame_, after(now_.time, frameInterval()));
+        if (checkpointsByTime()) nextCheckpoint_ = after(now_.time, scene_.output.checkpointEvery);
     }
 
     double share() const {
@@ -151,33 +173,37 @@ private:
 
     std::string describe() const {
         return fmt::format("step {}, {:.4g} s, {:.3g} ms/step", steps_, now_.time,
-                           1000 * stepSeconds_ / double(steps_));
+                           1000 * stepSeconds_ / double(made_));
     }
 
     // A row of the series and a frame of the sequence, if they are due.
     void sample() {
         const Output& output = scene_.output;
-        const double frameTime = 1 / double(output.fps);
         if (rows_ && now_.time >= nextRow_) {
             addRow();
-            nextRow_ = after(now_.time, output.sampleEvery > 0 ? double(output.sampleEvery) : frameTime);
+            nextRow_ = after(now_.time, rowInterval());
         }
         if (!output.frames.empty() && now_.time >= nextFrame_) {
-            const auto file = std::filesystem::path(output.frames) / fmt::format("frame_{:05}.png", frames_++);
+            const auto file = std::filesystem::path(output.frames) / fmt::format("frame_{:05}.png", frameTimes_.size());
             pictures_->save(*simulation_, scene_, file.string());
-            nextFrame_ = after(now_.time, frameTime);
+            frameTimes_.push_back(now_.time);
+            nextFrame_ = after(now_.time, frameInterval());
         }
     }
 
+    double frameInterval() const { return 1 / double(scene_.output.fps); }
+    double rowInterval() const { return scene_.output.sampleEvery > 0 ? double(scene_.output.sampleEvery) : frameInterval(); }
     // Of the multiples of `every` the first one that is still ahead.
     static double after(double time, double every) { return (std::floor(time / every * (1 + 1e-9)) + 1) * every; }
 
     bool checkpointsByTime() const { return !scene_.output.checkpoint.empty() && scene_.output.checkpointEvery > 0; }
     // The run goes on from what the file holds, so that whoever restarts from it gets the same bits.
     void saveCheckpoint() {
-        const RunState state = simulation_->state();
+        RunState state = simulation_->state();
         writeCheckpoint(scene_.output.checkpoint, scene_, state);
+        written_ = state.clock.time;
         simulation_->restart(state);
+        guard_->keep(std::move(state));
         nextCheckpoint_ = after(now_.time, scene_.output.checkpointEvery);
     }
 
@@ -202,6 +228,8 @@ private:
         writeSeries();
         if (!output.checkpoint.empty() && trouble_.empty())
             writeCheckpoint(output.checkpoint, scene_, simulation_->state());
+        else if (!output.checkpoint.empty() && guard_->lastGood().clock.time > written_)
+            writeCheckpoint(output.checkpoint, scene_, guard_->lastGood());
         if (!output.particles.empty() && trouble_.empty()) saveParticles(output.particles, simulation_->particles());
         if (!output.screenshot.empty()) pictures_->save(*simulation_, scene_, output.screenshot);
         if (!quiet_) summarise();
@@ -211,7 +239,7 @@ private:
         const Output& output = scene_.output;
         // Standard output may already belong to the series.
         std::FILE* out = output.csv == "-" || output.json == "-" ? stderr : stdout;
-        const double ms = steps_ > 0 ? 1000 * stepSeconds_ / double(steps_) : 0;
+        const double ms = made_ > 0 ? 1000 * stepSeconds_ / double(made_) : 0;
         fmt::print(out, "scene          {}\n", scene_.name);
         fmt::print(out, "device         {}\n", simulation_->deviceName());
         if (pictures_ && pictures_->frame.copiesVertices())
@@ -224,12 +252,14 @@ private:
                    now_.potentialEnergy);
         fmt::print(out, "density error  {:.3g} % mean, {:.3g} % largest\n", 100 * now_.densityError,
                    100 * now_.maxDensityError);
-        if (!output.checkpoint.empty() && trouble_.empty()) fmt::print(out, "checkpoint     {}\n", output.checkpoint);
+        if (guard_->retries() > 0) fmt::print(out, "went back      {} times, on with shorter steps\n", guard_->retries());
+        if (!output.checkpoint.empty())
+            fmt::print(out, "checkpoint     {}{}\n", output.checkpoint, trouble_.empty() ? "" : ", from before the trouble");
         if (!output.particles.empty() && trouble_.empty()) fmt::print(out, "particles in   {}\n", output.particles);
         if (!output.screenshot.empty())
             fmt::print(out, "picture        {}\n",
                        std::filesystem::absolute(output.screenshot).lexically_normal().string());
-        if (frames_ > 0) fmt::print(out, "frames         {} in {}\n", frames_, output.frames);
+        if (!frameTimes_.empty()) fmt::print(out, "frames         {} in {}\n", frameTimes_.size(), output.frames);
     }
 
     Scene scene_;
@@ -239,12 +269,14 @@ private:
         pictures_;  // before the simulation: no display is noticed before work begins
     std::unique_ptr<Simulation> simulation_;
     Probes probes_;
+    std::optional<HealthGuard> guard_;
     TimeSeries series_;
     Measurement now_;
     std::string trouble_;  // why the run stopped early
-    int64_t steps_ = 0, lastRow_ = 0;
-    int frames_ = 0;
-    double nextRow_ = 0, nextFrame_ = 0, nextCheckpoint_ = 0;  // s simulated
+    int64_t first_ = 0, steps_ = 0, lastRow_ = 0;   // steps before this run, in it, until the last row
+    int64_t made_ = 0;                              // with those that were made in vain
+    std::vector<double> frameTimes_;                // s, of the frames written
+    double nextRow_ = 0, nextFrame_ = 0, nextCheckpoint_ = 0, written_ = -1;  // s simulated; the last: of the checkpoint
     double stepSeconds_ = 0;                      // of wall time
     StopSignals signals_;
 };

@@ -79,6 +79,12 @@ void TimeSeries::add(const Measurement& m, const std::vector<PassTime>& passes, 
     rows_.push_back(std::move(row));
 }
 
+size_t TimeSeries::dropAfter(double time) {
+    const size_t before = rows_.size();
+    while (!rows_.empty() && !(rows_.back()[0] <= time)) rows_.pop_back();   // column 0 is the time
+    return before - rows_.size();
+}
+
 double TimeSeries::valueAt(size_t row, size_t column) const {
     return column < rows_[row].size() ? rows_[row][column] : 0;
 }

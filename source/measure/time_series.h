@@ -17,6 +17,8 @@ public:
     // a column of its own then, 0 where it didn't run.
     void add(const Measurement&, const std::vector<PassTime>& passes, const std::vector<double>& more = {});
     size_t size() const { return rows_.size(); }
+    // Forgets the rows after this time, s: the run has gone back to it. Returns how many.
+    size_t dropAfter(double time);
 
     // "time [s],..." then a line a row. Values that are no numbers are written as nan.
     std::string csv() const;

@@ -1,6 +1,7 @@
 #include "measure/validation.h"
 
 #include "measure/exact.h"
+#include "measure/health.h"
 #include "measure/interpolate.h"
 #include "measure/probes.h"
 #include "core/table.h"
@@ -25,7 +26,7 @@ const double NaN = std::nan("");
 // Steps a simulation and keeps the time it takes, measurements left out.
 class Stepping {
 public:
-    Stepping(const Scene& scene, ValidationRun& run) : simulation_(makeSimulation(scene)), run_(run) {
+    Stepping(const Scene& scene, ValidationRun& run) : scene_(scene), simulation_(makeSimulation(scene)), run_(run) {
         run.cost.particles = simulation_->fluidCount(), run.cost.walls = simulation_->wallCount();
     }
     Simulation& operator*() { return *simulation_; }
@@ -37,14 +38,14 @@ public:
         simulation_->wait();
         run_.cost.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         const Measurement m = simulation_->measure();
-        run_.diverged = !m.finite;
+        run_.diverged = run_.diverged || !divergence(scene_, m).empty();
         run_.cost.steps = m.steps;
         run_.cost.megabytes = double(simulation_->bytes()) / 1e6;
     }
-    // Until `time` (s) is reached, at most a step beyond; stops early when the run has become nothing.
+    // Until `time` (s) is reached, at most a step beyond; stops early when the run has diverged.
     void until(double time) {
         Measurement m = simulation_->measure();
-        while (m.time < time && m.finite) {
+        while (m.time < time && !run_.diverged) {
             const int most = m.dt > 0 ? std::clamp(int((time - m.time) / m.dt / 1.5), 1, 200) : 1;
             steps(most);
             m = simulation_->measure();
@@ -52,6 +53,7 @@ public:
     }
 
 private:
+    const Scene& scene_;
     std::unique_ptr<Simulation> simulation_;
     ValidationRun& run_;
 };

@@ -21,7 +21,7 @@ struct ValidationRun {
     RunCost cost;
     std::vector<Metric> metrics;   // the first one tells the order of convergence
     Chart chart;
-    bool diverged = false;         // became something without numbers; the metrics are NaN then
+    bool diverged = false;         // and ended there; the metrics are NaN then
 };
 
 struct ValidationCase {

@@ -130,6 +130,7 @@ struct TimeKnobs {
     float step = 0.0005f;                       // s, used by fixed
     float cfl = 0.4f;                           // Courant number: dt <= cfl h / (c + |v|), h = R/2
     float maxStep = 0.01f;                      // s
+    int retries = 3;                            // with half the step from an earlier state, before a run in trouble is given up
 };
 
 struct Camera {

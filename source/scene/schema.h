@@ -251,6 +251,8 @@ void visitPhysics(S& s, Visitor&& visit) {
     visit("time.step", s.time.step, Knob{"s", 1e-8f, 1, "time step when fixed"});
     visit("time.cfl", s.time.cfl, Knob{"", 0.01f, 1, "Courant number: share of the stable step"});
     visit("time.max_step", s.time.maxStep, Knob{"s", 1e-8f, 1, "longest step the cfl mode takes"});
+    visit("time.retries", s.time.retries,
+          Knob{"", 0, 8, "how often a run in trouble goes back to its last good state and on with half the step"});
 }
 
 template <class S, class Visitor>

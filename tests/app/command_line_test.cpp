@@ -168,6 +168,31 @@ TEST_F(CommandLine, ADivergedRunSaysSoAndKeepsItsData) {
     EXPECT_NE(slurp(folder_ / "run.csv").find("time [s]"), std::string::npos);
 }
 
+TEST_F(CommandLine, ARunInTroubleGoesOnWithShorterSteps) {
+    const Outcome outcome = call(Small + "--steps 1500 --set time.mode=fixed --set time.step=0.02 --csv run.csv --set output.fps=1000 --quiet");
+    EXPECT_EQ(outcome.code, 0) << outcome.text;
+    EXPECT_NE(outcome.text.find("back to step 0 (0 s), on with 0.5 of the time step, try 1 of 3"), std::string::npos) << outcome.text;
+    // Time runs forward in what was written.
+    std::ifstream csv(folder_ / "run.csv");
+    std::string line;
+    double last = -1;
+    int rows = 0;
+    for (std::getline(csv, line); std::getline(csv, line); ++rows) {
+        EXPECT_GT(std::stod(line), last);
+        last = std::stod(line);
+    }
+    EXPECT_GT(rows, 100);
+}
+
+TEST_F(CommandLine, AGivenUpRunLeavesItsLastGoodState) {
+    const Outcome outcome = call(
+        Small + "--steps 1000000 --set time.mode=fixed --set time.step=0.5 --checkpoint last.h5 --quiet --set time.retries=1");
+    EXPECT_EQ(outcome.code, int(Exit::Diverged)) << outcome.text;
+    EXPECT_NE(outcome.text.find("; particle "), std::string::npos) << outcome.text;
+    EXPECT_EQ(std::count(outcome.text.begin(), outcome.text.end(), '\n'), 2) << "one line a try, one for the end: " << outcome.text;
+    EXPECT_EQ(call("last.h5 --headless --quiet --set time.mode=cfl --steps 50").code, 0);
+}
+
 TEST_F(CommandLine, AGpuThatIsMissingIsAnError) {
     const Outcome outcome = call(Small + "--steps 1 --backend cuda");
     if (outcome.code == 0) GTEST_SKIP() << "this machine has one";

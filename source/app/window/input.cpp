@@ -24,6 +24,7 @@ const std::vector<Control> controls = {
     {"Tab", "panel"},
     {"F", "full screen"},
     {"F12", "screenshot"},
+    {"Ctrl + S", "checkpoint"},
     {"H, F1", "this help"},
     {"Esc", "leave"},
     {"Drop a JSON file", "load a scene"},
@@ -132,6 +133,9 @@ void pressKey(Ui& ui, SDL_Keycode key) {
             break;
         case SDLK_F12:
             ui.screenshot = true;
+            break;
+        case SDLK_s:
+            if (SDL_GetModState() & KMOD_CTRL) ui.saveCheckpoint();
             break;
         case SDLK_h:
         case SDLK_F1:

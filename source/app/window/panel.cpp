@@ -43,6 +43,7 @@ void transport(Ui& ui) {
     if (ImGui::Button("Step", third)) ui.player.stepOnce();
     ImGui::SameLine();
     if (ImGui::Button("Reset", third)) ui.reset();
+    if (ImGui::Button("Save checkpoint", {-1, 0})) ui.saveCheckpoint();
 }
 
 void status(const Ui& ui) {

@@ -1,7 +1,7 @@
 #include "app/window/player.h"
 
 #include "core/error.h"
-#include "measure/health.h"
+#include "measure/checkpoint.h"
 
 #include <algorithm>
 #include <chrono>
@@ -37,6 +37,11 @@ void History::add(const Measurement& m) {
     for (size_t c = 0; c < std::size(curves); ++c) curves[c]->push_back(float(values[c]));
 }
 
+void History::dropAfter(double t) {
+    const auto keep = size_t(std::upper_bound(time.begin(), time.end(), float(t)) - time.begin());
+    for (std::vector<float>* curve : {&time, &kinetic, &potential, &total, &densityError}) curve->resize(keep);
+}
+
 Player::Player(Start start) {
     auto simulation = startSimulation(start.scene, start.state);
     begin(std::move(start.scene), std::move(simulation));
@@ -44,12 +49,14 @@ Player::Player(Start start) {
 }
 
 void Player::begin(Scene s, std::unique_ptr<Simulation> simulation) {
-    stepper_ = std::make_unique<Stepper>(std::move(simulation));
+    stepper_ = std::make_unique<Stepper>(std::move(simulation), s);
     scene = std::move(s);
     measurement_ = stepper_->measurement();
     history_ = {};
     history_.add(measurement_);
     halted.clear();
+    notice.clear();
+    culprits.clear();
     lag_ = rateTime_ = stepsPerSecond_ = realTimeFactor_ = 0;
     rateSteps_ = 0;
     stepsLeft_ = scene.compute.steps;
@@ -75,7 +82,7 @@ void Player::switchBackend(Backend backend) {
     while (stepper_->busy()) stepper_->wait(1);
     Scene next = scene;
     next.compute.backend = backend;
-    stepper_ = std::make_unique<Stepper>(makeSimulation(next, stepper_->simulation().state()));
+    stepper_ = std::make_unique<Stepper>(makeSimulation(next, stepper_->simulation().state()), next);
     scene.compute.backend = backend;
     stirWanted_ = false;
 }
@@ -83,6 +90,11 @@ void Player::switchBackend(Backend backend) {
 void Player::stepOnce() {
     running = false;
     stepWanted_ = true;
+}
+
+void Player::saveCheckpoint(const std::string& file) {
+    while (stepper_->busy()) stepper_->wait(1);
+    writeCheckpoint(file, scene, culprits.empty() ? stepper_->simulation().state() : stepper_->guard().lastGood());
 }
 
 void Player::halt(const std::string& why) {
@@ -113,14 +125,20 @@ void Player::takeMeasurement() {
         stepsLeft_ = std::max<int64_t>(stepsLeft_ - (measurement_.steps - stepsBefore), 0);
         if (stepsLeft_ == 0) running = false;
     }
+    HealthGuard& guard = stepper_->guard();
+    if (stepper_->finding() == HealthGuard::Finding::WentBack) history_.dropAfter(measurement_.time);
     history_.add(measurement_);
-    const std::string why = divergence(scene, measurement_);
-    if (!why.empty()) halt(why + ", then press R");
+    if (stepper_->finding() == HealthGuard::Finding::GaveUp) {
+        culprits = guard.culprits();
+        halt(guard.said() + ", then press R");
+    } else if (!guard.said().empty()) {
+        notice = guard.said();
+    }
 }
 
 void Player::meetRequests() {
     try {
-        if (applyWanted_) stepper_->simulation().apply(scene);
+        if (applyWanted_) stepper_->guard().apply(scene);
     } catch (const Error& error) { halt(error.what()); }
     if (stirWanted_) stepper_->simulation().stir(stir_);
     applyWanted_ = stirWanted_ = false;

@@ -13,6 +13,7 @@ namespace spindrift {
 struct History {
     std::vector<float> time, kinetic, potential, total, densityError;  // s, J, J, J, 1
     void add(const Measurement&);
+    void dropAfter(double time);   // the run has gone back to it
 
 private:
     double least_ = 0;  // s between samples
@@ -27,6 +28,8 @@ public:
     Scene scene;  // edit live knobs, then call knobsChanged()
     bool running = true;
     std::string halted;  // why the run was stopped by itself; empty = it wasn't
+    std::string notice;  // what the health guard says while the run goes on; whoever shows it empties it
+    std::vector<Particle> culprits;  // of a run that was stopped by itself
 
     // Requests; they are met when the simulation is at hand (collect).
     void knobsChanged() { applyWanted_ = true; }
@@ -55,6 +58,8 @@ public:
     void wait(double seconds) const { stepper_->wait(seconds); }
     Simulation& simulation() { return stepper_->simulation(); }
     const Measurement& measurement() const { return measurement_; }
+    // Writes where the run stands, or its last good state when it was stopped by itself. Throws Error (Output).
+    void saveCheckpoint(const std::string& file);
     const History& history() const { return history_; }
     const Camera& initialCamera() const { return initialCamera_; }
     double stepsPerSecond() const { return stepsPerSecond_; }

@@ -8,8 +8,9 @@
 
 namespace spindrift {
 
-Stepper::Stepper(std::unique_ptr<Simulation> simulation)
+Stepper::Stepper(std::unique_ptr<Simulation> simulation, const Scene& scene)
     : simulation_(std::move(simulation)),
+      guard_(*simulation_, scene),
       measurement_(simulation_->measure()),
       thread_([this](std::stop_token stop) { work(stop); }) {}
 
@@ -38,6 +39,11 @@ void Stepper::start(Batch batch) {
 Simulation& Stepper::simulation() {
     CHECK(!busy());
     return *simulation_;
+}
+
+HealthGuard& Stepper::guard() {
+    CHECK(!busy());
+    return guard_;
 }
 
 const Measurement& Stepper::measurement() {
@@ -75,6 +81,7 @@ void Stepper::runBatch() {
             group = std::min(fitting, batch_.steps - done);
         }
         measurement_ = simulation_->measure();
+        finding_ = guard_.look(measurement_);
     } catch (...) { failure_ = std::current_exception(); }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // A simulation that steps on a thread of its own, so that the window answers however long a step
 // takes.
+#include "measure/health.h"
 #include "sim/simulation.h"
 
 #include <condition_variable>
@@ -20,7 +21,7 @@ struct Batch {
 // Handover: while busy() the thread alone touches the simulation, otherwise the owner alone does.
 class Stepper {
 public:
-    explicit Stepper(std::unique_ptr<Simulation>);
+    Stepper(std::unique_ptr<Simulation>, const Scene&);
     ~Stepper();  // waits for the step at hand
 
     bool busy() const;
@@ -32,12 +33,17 @@ public:
     Simulation& simulation();
     // Measured after the last batch. Throws what a step threw.
     const Measurement& measurement();
+    // What the guard found after that batch, and what it has to say.
+    HealthGuard::Finding finding() const { return finding_; }
+    HealthGuard& guard();
 
 private:
     void work(std::stop_token);
     void runBatch();
 
     std::unique_ptr<Simulation> simulation_;
+    HealthGuard guard_;
+    HealthGuard::Finding finding_ = HealthGuard::Finding::Sound;
     Batch batch_;
     Measurement measurement_;
     std::exception_ptr failure_;

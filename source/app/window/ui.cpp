@@ -15,9 +15,9 @@ double uiTime() {
         .count();
 }
 
-std::string screenshotName(const std::string& folder) {
+std::string freeName(const std::string& extension, const std::string& folder) {
     for (int i = 1;; ++i) {
-        const std::string name = fmt::format("spindrift-{:03}.png", i);
+        const std::string name = fmt::format("spindrift-{:03}{}", i, extension);
         if (!std::filesystem::exists(std::filesystem::path(folder) / name)) return name;
     }
 }
@@ -83,11 +83,22 @@ void Ui::resetCamera() {
 void Ui::takeScreenshot() {
     screenshot = false;
     try {
-        const std::string name = screenshotName();
+        const std::string name = freeName(".png");
         writePng(name, frame.image());
         std::printf("%s\n", std::filesystem::absolute(name).c_str());
         std::fflush(stdout);
         say("saved " + name);
+    } catch (const Error& error) { say(error.what(), true); }
+}
+
+// Of a run that was stopped by itself: its last good state.
+void Ui::saveCheckpoint() {
+    try {
+        const std::string name = freeName(".h5");
+        player.saveCheckpoint(name);
+        std::printf("%s\n", std::filesystem::absolute(name).c_str());
+        std::fflush(stdout);
+        say("saved " + name + ", from which the run can go on");
     } catch (const Error& error) { say(error.what(), true); }
 }
 
@@ -119,6 +130,8 @@ void Ui::refreshPicked() {
 std::vector<Ring> Ui::rings() const {
     std::vector<Ring> marks;
     if (drag == Drag::Stir) marks.push_back({stirCenter, stirRadius, {1.0f, 0.85f, 0.4f}});
+    for (const Particle& p : player.culprits)
+        marks.push_back({toFloat(p.position) - player.scene.domain.min, 2 * player.scene.simulation.spacing, {1.0f, 0.2f, 0.1f}});
     if (picked)
         marks.push_back({toFloat(picked->position) - player.scene.domain.min,
                          0.9f * player.scene.simulation.spacing,

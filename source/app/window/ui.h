@@ -71,6 +71,7 @@ struct Ui {
     void colorBy(ColorBy);
     void resetCamera();
     void takeScreenshot();
+    void saveCheckpoint();
     void pick();           // the simulation must be at hand
     void refreshPicked();  // likewise
     std::vector<Ring> rings() const;
@@ -78,7 +79,7 @@ struct Ui {
 
 double uiTime();  // s
 
-// "spindrift-001.png", or the first number that's free in this folder.
-std::string screenshotName(const std::string& folder = ".");
+// "spindrift-001.png" for ".png", or the first number that's free in this folder.
+std::string freeName(const std::string& extension, const std::string& folder = ".");
 
 }  // namespace spindrift

@@ -181,6 +181,8 @@ private:
         if (!ui_.player.collect(moved)) return;
         if (generation_ != ui_.player.generation()) startOver();
         moved_ |= moved;
+        if (!ui_.player.notice.empty()) ui_.say(std::exchange(ui_.player.notice, {}), true);
+        ui_.stale |= !ui_.player.culprits.empty() && moved;
         try {
             if (ui_.rewrite || (moved_ && timeForPicture())) updateVertices();
             if (ui_.pickAt) ui_.pick();

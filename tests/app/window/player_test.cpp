@@ -2,6 +2,7 @@
 #include "app/window/player.h"
 
 #include "core/error.h"
+#include "measure/checkpoint.h"
 #include "scene/json.h"
 
 #include <gtest/gtest.h>
@@ -104,6 +105,23 @@ TEST(Player, LoadReplacesSceneAndSimulation) {
     EXPECT_NE(player.simulation().fluidCount(), count);
     EXPECT_EQ(player.measurement().steps, 0);
     EXPECT_EQ(player.generation(), 2);
+}
+
+TEST(Player, TroubleThatShorterStepsCantHelpHaltsTheRunAndMarksParticles) {
+    Scene scene = loadScene(small);
+    scene.time.mode = TimeMode::Fixed, scene.time.step = 0.5f, scene.time.retries = 1;
+    Player player(scene);
+    ASSERT_TRUE(play(player, [&] { return !player.halted.empty(); }));
+    EXPECT_FALSE(player.running);
+    EXPECT_NE(player.notice.find("try 1 of 1"), std::string::npos) << player.notice;
+    EXPECT_NE(player.halted.find("diverged at step"), std::string::npos) << player.halted;
+    EXPECT_FALSE(player.culprits.empty());
+    const auto file = std::filesystem::temp_directory_path() / ("spindrift-good-" + std::to_string(getpid()) + ".h5");
+    player.saveCheckpoint(file.string());
+    EXPECT_EQ(readCheckpoint(file.string()).state.clock.steps, 0) << "the last good state";
+    std::filesystem::remove(file);
+    player.reset();
+    EXPECT_TRUE(player.halted.empty() && player.notice.empty() && player.culprits.empty());
 }
 
 TEST(History, ThinsOutInsteadOfGrowing) {

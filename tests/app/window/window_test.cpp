@@ -145,6 +145,14 @@ TEST_F(WindowTest, DoubleClickMarksAParticleAndCtrlDragStirs) {
     EXPECT_TRUE(window.running());
 }
 
+TEST_F(WindowTest, CtrlSSavesACheckpoint) {
+    Window window = paused();
+    const Image before = settled(window);
+    window.act("key s key ctrl+s sleep 0.5");
+    EXPECT_NE(window.log().find("spindrift-001.h5"), std::string::npos) << window.log();
+    EXPECT_EQ(window.log().find("spindrift-002.h5"), std::string::npos) << "S alone does nothing";
+}
+
 TEST_F(WindowTest, FullScreenAndBack) {
     Window window = paused();
     const Image before = settled(window);
