@@ -4,7 +4,7 @@ BUILD ?= build
 ARGS ?=
 CMAKE_ARGS ?=
 
-.PHONY: run test build configure bench validate stress documents program gpu-check gpu-bundle meson sanitize install clean
+.PHONY: run test build configure bench validate stress fuzz documents program gpu-check gpu-bundle meson sanitize install clean
 
 # Only what it needs: the tests are built by `make build`.
 run: program
@@ -20,9 +20,19 @@ bench: program
 validate: program
 	$(BUILD)/spindrift validate --out $(BUILD)/validation $(ARGS)
 
-# Runs that are meant to break the physics, all of them: half an hour.
+# Runs that are meant to break the physics, all of them, and maps of what is stable: a quarter of an hour.
 stress: program
 	$(BUILD)/spindrift stress --full --out $(BUILD)/stress $(ARGS)
+
+# Any text as a scene file, for ten minutes: libFuzzer with AddressSanitizer and UndefinedBehaviorSanitizer; needs clang.
+# What is found stays in build-fuzz/; make fuzz ARGS=build-fuzz/crash-... runs one input.
+fuzz: install
+	@command -v clang++ >/dev/null || { echo "make fuzz needs clang: apt-get install clang" >&2; exit 1; }
+	@mkdir -p build-fuzz/corpus
+	clang++ -std=c++20 -O1 -g1 -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=undefined -Isource \
+		source/core/*.cpp source/scene/*.cpp tests/fuzz/scene_fuzz.cpp -lfmt -o build-fuzz/scene_fuzz
+	build-fuzz/scene_fuzz -max_len=6000 -timeout=10 -artifact_prefix=build-fuzz/ -dict=tests/fuzz/scene.dict \
+		$(or $(ARGS),-max_total_time=600 -print_final_stats=1 build-fuzz/corpus configs configs/test configs/validation)
 
 # What docs/ACCURACY.md and docs/STABILITY.md say below their marks, measured anew: an hour. Missed targets don't end it.
 documents: program
@@ -31,7 +41,7 @@ documents: program
 	-$(BUILD)/spindrift stress --full --random 3000 --out $(BUILD)/stress
 	docs/fill_in.sh docs/ACCURACY.md $(BUILD)/validation/validation.md $(BUILD)/error/error.md
 	docs/fill_in.sh docs/STABILITY.md $(BUILD)/stress/stability.md
-	cp $(BUILD)/error/*.svg docs/images/
+	cp $(BUILD)/error/*.svg $(BUILD)/stress/*.svg docs/images/
 
 program: configure
 	@cmake --build $(BUILD) --target spindrift
@@ -67,4 +77,4 @@ install:
 	@third_party/install.sh
 
 clean:
-	rm -rf build build-meson build-sanitize
+	rm -rf build build-meson build-sanitize build-fuzz

@@ -20,9 +20,10 @@ enum class Exit {
     Internal = 70,      // a bug of ours
 };
 
-// A mistake the user can mend. `what()` is one line: what happened, where, and how to mend it.
+// A mistake the user can mend. `what()` is one line: what happened, where, and how to mend it; control characters of what it cites, a
+// file's name or a key, become spaces.
 struct Error : std::runtime_error {
-    Error(Exit code, const std::string& message) : std::runtime_error(message), exit(code) {}
+    Error(Exit code, const std::string& message);
     Exit exit;
 };
 

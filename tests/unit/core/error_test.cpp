@@ -19,5 +19,8 @@ TEST(Error, KeepsWordsAndExitCode) {
     EXPECT_EQ(int(error.exit), 7);
 }
 
+// Whatever it cites.
+TEST(Error, IsOneLine) { EXPECT_STREQ(Error(Exit::Scene, "a\nb\tc\x1b[0m").what(), "a b c [0m"); }
+
 }  // namespace
 }  // namespace spindrift
