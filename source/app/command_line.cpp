@@ -232,13 +232,14 @@ CLI::App* addBench(CLI::App& app, BenchOptions& options, bool& error, ErrorBench
     command->add_flag("--error", error, "run time against error instead, of flows with known answers; half an hour");
     command->add_option("--case", errorOptions.cases, "with --error: only this flow; may be repeated")->type_name("NAME")
         ->allow_extra_args(false);
+    command->add_flag("--coarsest", errorOptions.coarsest, "with --error: only the coarsest resolution, minutes");
     command->add_option("--out", errorOptions.out, "with --error: folder for tables and charts")->type_name("FOLDER");
     return command;
 }
 
 CLI::App* addStress(CLI::App& app, StressOptions& options) {
     CLI::App* command = app.add_subcommand("stress", "runs that are meant to break the physics; half a minute");
-    command->add_option("--only", options.only, "tortures whose name contains this, no random scenes")->type_name("TEXT");
+    command->add_option("--only", options.only, "tortures whose name contains this, or random, or maps")->type_name("TEXT");
     command->add_option("--random", options.random, "number of random scenes")->type_name("N")->check(CLI::Range(0, 1000000));
     command->add_option("--seed", options.seed, "of the first random scene")->type_name("N");
     command->add_flag("--full", options.full, "also what takes many minutes, and maps of what is stable");

@@ -21,13 +21,35 @@ namespace {
 // What differs from the case's scene.
 struct Variant { std::string name; std::vector<std::pair<std::string, std::string>> knobs; };
 
+// A case, and where its sweep begins: coarse enough that a hundred methods are tried in a minute or two.
+struct Sweep { const char* name; std::vector<int> resolutions; };
+const Sweep Sweeps[] = {{"taylor_green", {50, 100, 200}}, {"poiseuille_re100", {20, 40}}, {"drop", {15, 25, 50}}, {"hydrostatic", {20, 30, 60}},
+                        {"dam_break_pressure", {30, 40, 80}}, {"cavity_re100", {25, 50}}};
+
+const Variant Shipped{"as shipped", {}};
+
+// Formulation x kernel and support x time step; then precision and device.
 std::vector<Variant> variants() {
-    std::vector<Variant> all{{"as shipped", {}}};
-    for (const char* f : {"wcsph", "delta_sph", "delta_plus", "transport_velocity"}) all.push_back({f, {{"simulation.formulation", f}}});
-    for (const char* r : {"2", "2.3", "3", "3.5"}) all.push_back({fmt::format("R = {} dx", r), {{"simulation.support", r}}});
-    all.push_back({"cubic spline", {{"simulation.kernel", "cubic_spline"}}});
-    for (const char* c : {"0.2", "0.4", "0.8", "1"}) all.push_back({fmt::format("cfl {}", c), {{"time.cfl", c}}});
-    all.push_back({"double precision", {{"compute.precision", "double"}}});
+    std::vector<Variant> all;
+    constexpr std::pair<const char*, const char*> Kernels[] = {{"wendland_c2", "2"}, {"wendland_c2", "2.3"}, {"wendland_c2", "2.6"},
+                                                               {"wendland_c2", "3"}, {"wendland_c2", "3.5"}, {"cubic_spline", "2.6"}};
+    for (const auto& [formulation, name] : {std::pair{"wcsph", "wcsph"}, {"delta_sph", "delta"}, {"delta_plus", "delta+"}, {"transport_velocity", "transport"}})
+        for (const auto& [kernel, support] : Kernels)
+            for (const char* cfl : {"0.2", "0.4", "0.8"})
+                all.push_back({fmt::format("{} {}{} cfl {}", name, *kernel == 'w' ? "W" : "C", support, cfl),
+                               {{"simulation.formulation", formulation}, {"simulation.kernel", kernel}, {"simulation.support", support}, {"time.cfl", cfl}}});
+    return all;
+}
+
+// What changes nothing but time and round-off, tried with the shipped method only.
+std::vector<Variant> machines(const Scene& scene) {
+    const auto simulation = makeSimulation(scene);
+    simulation->step(20);
+    const double step = simulation->measure().dt;
+    std::vector<Variant> all;
+    for (double factor : {1.0, 2.0})
+        all.push_back({fmt::format("fixed step x {:g}", factor), {{"time.mode", "fixed"}, {"time.step", fmt::format("{:.6g}", factor * step)}}});
+    all.push_back({"double", {{"compute.precision", "double"}}});
     if (whyNoGpu(Scene{}).empty()) all.push_back({"GPU", {{"compute.backend", "cuda"}}});
     return all;
 }
@@ -36,16 +58,17 @@ std::vector<Variant> variants() {
 struct Known { const char* name; const char* what; double error; };
 constexpr Known Peers[] = {
     {"taylor_green", "PySPH EDAC, N = 100 (stored results, 2020)", 1.38},
+    {"taylor_green", "PySPH TVF, N = 100 (stored results, 2020)", 5.1},
     {"taylor_green", "delta+-SPH in PySPH, N = 100 (2020)", 3.6},
     {"cavity_re100", "delta+-SPH in PySPH, N = 50", 0.52},
     {"cavity_re100", "PySPH EDAC, N = 50", 0.69},
 };
 
 struct Point {
-    std::string variant;
+    Variant variant;
     ValidationRun run;
     bool shipped = false, front = false;
-    double error() const { return std::abs(run.metrics[0].value); }
+    double error() const { return run.diverged ? std::nan("") : std::abs(run.metrics[0].value); }
     double stepsPerSecond() const { return double(run.cost.steps) * run.cost.particles / run.cost.seconds; }
 };
 
@@ -70,18 +93,42 @@ void markFront(std::vector<Point>& points) {
                   });
 }
 
+// Worth to be tried finer: the front of a resolution, and who is nearly on it.
+std::vector<Variant> survivors(std::vector<Point> points, int resolution) {
+    std::erase_if(points, [&](const Point& p) { return p.run.resolution != resolution || p.shipped || !std::isfinite(p.error()); });
+    std::vector<Variant> kept;
+    std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.run.cost.seconds < b.run.cost.seconds; });
+    double best = 1e300;
+    for (const Point& p : points) {
+        if (p.error() > 1.1 * best) continue;
+        best = std::min(best, p.error());
+        kept.push_back(p.variant);
+    }
+    // The best ones when there are many.
+    if (kept.size() > 8) kept.erase(kept.begin(), kept.end() - 8);
+    return kept;
+}
+
 std::vector<Point> sweep(const ValidationCase& c) {
     std::vector<Point> points;
-    for (const Variant& variant : variants())
-        for (int resolution : c.resolutions) {
+    std::vector<Variant> others = variants();
+    for (int resolution : c.resolutions) {
+        Scene shipped;
+        choose(c, Shipped, resolution, shipped);
+        std::vector<Variant> tried{Shipped};
+        for (const Variant& v : machines(shipped)) tried.push_back(v);
+        tried.insert(tried.end(), others.begin(), others.end());
+        for (const Variant& variant : tried) {
             Scene scene;
             if (!choose(c, variant, resolution, scene)) continue;
-            points.push_back({variant.name, validate(c, scene, resolution), variant.knobs.empty()});
+            points.push_back({variant, validate(c, scene, resolution), variant.knobs.empty()});
             const Point& p = points.back();
-            fmt::print("{:20} {:>5} {:>12.4g} {:>9.2f} {:>9} {:>12.3g} {:>8.1f}\n", p.variant, resolution, p.error(),
-                       p.run.cost.seconds, p.run.cost.steps, p.stepsPerSecond(), p.run.cost.megabytes);
+            fmt::print("{:24} {:>5} {:>12.4g} {:>9.2f} {:>9} {:>12.3g} {:>8.1f}\n", variant.name, resolution, p.error(), p.run.cost.seconds,
+                       p.run.cost.steps, p.stepsPerSecond(), p.run.cost.megabytes);
             std::fflush(stdout);
         }
+        others = survivors(points, resolution);
+    }
     markFront(points);
     return points;
 }
@@ -89,7 +136,7 @@ std::vector<Point> sweep(const ValidationCase& c) {
 Chart chartOf(const ValidationCase& c, const std::vector<Point>& points) {
     const Metric& metric = points.front().run.metrics[0];
     Chart chart{c.title + ": error against run time", "run time, s", metric.name + ", " + metric.unit, {}, true, true};
-    Curve shipped{"as shipped, " + c.length, {}, {}, Curve::Line}, other{"one thing changed", {}, {}, Curve::Points};
+    Curve shipped{"as shipped, " + c.length, {}, {}, Curve::Line}, other{"other kernels, steps, formulations", {}, {}, Curve::Points};
     Curve front{"Pareto front", {}, {}, Curve::Dashed};
     std::vector<const Point*> sorted;
     for (const Point& p : points) {
@@ -98,7 +145,10 @@ Chart chartOf(const ValidationCase& c, const std::vector<Point>& points) {
         if (p.front) sorted.push_back(&p);
     }
     std::sort(sorted.begin(), sorted.end(), [](auto* a, auto* b) { return a->run.cost.seconds < b->run.cost.seconds; });
-    for (const Point* p : sorted) front.x.push_back(p->run.cost.seconds), front.y.push_back(p->error());
+    for (const Point* p : sorted) {
+        front.x.push_back(p->run.cost.seconds), front.y.push_back(p->error());
+        front.labels.push_back(fmt::format("{}, {}", p->variant.name, p->run.resolution));
+    }
     chart.curves = {shipped, other, front};
     const auto [least, most] = std::minmax_element(points.begin(), points.end(), [](const Point& a, const Point& b) {
         return a.run.cost.seconds < b.run.cost.seconds;
@@ -112,20 +162,21 @@ Chart chartOf(const ValidationCase& c, const std::vector<Point>& points) {
 std::string table(const ValidationCase& c, const std::vector<Point>& points) {
     const Metric& metric = points.front().run.metrics[0];
     std::string text = fmt::format("\n### {}\n\nError: {}, {}. Resolution: {}. Against {}. **Bold**: on the Pareto front.\n\n"
+                                   "W, C: Wendland C2 or cubic spline kernel, R / dx. Finer resolutions: only what was good at the coarser one.\n\n"
                                    "| method | resolution | error | seconds | steps | million particle-steps a second | MB |\n"
                                    "|---|---|---|---|---|---|---|\n",
                                    c.title, metric.name, metric.unit, c.length, c.reference);
     for (const Point& p : points) {
         const char* bold = p.front ? "**" : "";
         const std::string error = std::isfinite(p.error()) ? fmt::format("{:.3g}", p.error()) : "diverged";
-        text += fmt::format("| {0}{1}{0} | {2} | {0}{3}{0} | {4:.2f} | {5} | {6:.1f} | {7:.1f} |\n", bold, p.variant, p.run.resolution,
+        text += fmt::format("| {0}{1}{0} | {2} | {0}{3}{0} | {4:.2f} | {5} | {6:.1f} | {7:.1f} |\n", bold, p.variant.name, p.run.resolution,
                             error, p.run.cost.seconds, p.run.cost.steps, p.stepsPerSecond() / 1e6, p.run.cost.megabytes);
     }
     return text;
 }
 
 nlohmann::json describe(const ValidationCase& c, const Point& p) {
-    return {{"case", c.name}, {"variant", p.variant}, {"method", p.run.method}, {"resolution", p.run.resolution},
+    return {{"case", c.name}, {"variant", p.variant.name}, {"method", p.run.method}, {"resolution", p.run.resolution},
             {"error", p.error()}, {"seconds", p.run.cost.seconds}, {"steps", p.run.cost.steps},
             {"particles", p.run.cost.particles}, {"particle_steps_per_second", p.stepsPerSecond()},
             {"megabytes", p.run.cost.megabytes}, {"front", p.front}};
@@ -135,20 +186,22 @@ nlohmann::json describe(const ValidationCase& c, const Point& p) {
 
 int benchError(const ErrorBenchOptions& options) {
     const std::vector<std::string> names =
-        options.cases.empty() ? std::vector<std::string>{"taylor_green", "poiseuille_re100", "cavity_re100", "drop", "hydrostatic"}
+        options.cases.empty() ? std::vector<std::string>{"taylor_green", "poiseuille_re100", "drop", "hydrostatic", "dam_break_pressure", "cavity_re100"}
                               : options.cases;
     if (!options.out.empty()) requireFolder(options.out);
     nlohmann::json rows = nlohmann::json::array();
     std::string csv = "case,variant,resolution,error,seconds,steps,particles,particle_steps_per_second,megabytes,front\n", markdown;
     for (const ValidationCase& all : chooseCases(validationCases(configsFolder() + "/validation/data"), names)) {
         ValidationCase c = all;
-        if (c.resolutions.size() > 2) c.resolutions.resize(2);   // the finest ones take minutes each
+        for (const Sweep& s : Sweeps)
+            if (c.name == s.name) c.resolutions = s.resolutions;
+        if (options.coarsest) c.resolutions.resize(1);
         fmt::print("\n=== {}\n{:20} {:>5} {:>12} {:>9} {:>9} {:>12} {:>8}\n", c.title, "method", c.length.substr(0, 1) + "/dx", "error",
                    "seconds", "steps", "p-steps/s", "MB");
         const std::vector<Point> points = sweep(c);
         for (const Point& p : points) {
             rows.push_back(describe(c, p));
-            csv += fmt::format("{},{},{},{:.6g},{:.4g},{},{},{:.4g},{:.4g},{}\n", c.name, p.variant, p.run.resolution, p.error(),
+            csv += fmt::format("{},{},{},{:.6g},{:.4g},{},{},{:.4g},{:.4g},{}\n", c.name, p.variant.name, p.run.resolution, p.error(),
                                p.run.cost.seconds, p.run.cost.steps, p.run.cost.particles, p.stepsPerSecond(),
                                p.run.cost.megabytes, int(p.front));
         }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace spindrift {
 namespace {
@@ -96,6 +97,37 @@ std::string drawn(const Curve& c, const Scale& x, const Scale& y, const char* co
                        c.style == Curve::Dashed ? " stroke-dasharray='7 5'" : "");
 }
 
+// Small words beside points: the first of some places around each where they cover nothing that is written already.
+struct Labels {
+    struct Box { double left, top, right, bottom; };
+    std::vector<Box> taken;
+
+    bool free(const Box& b) const {
+        return b.left > Left && b.right < Width - Right && b.top > Top && b.bottom < Height - Bottom &&
+               std::none_of(taken.begin(), taken.end(), [&](const Box& o) {
+                   return b.left < o.right && o.left < b.right && b.top < o.bottom && o.top < b.bottom;
+               });
+    }
+    std::string put(const std::string& text, double x, double y) {
+        const double width = 5.2 * double(text.size());
+        for (double away : {0.0, 12.0, 24.0, 36.0, 48.0, 60.0, 80.0})
+            for (const auto& [dx, dy] : {std::pair{6.0, 12.0 + away}, {6.0, -4.0 - away}, {-6.0 - width, 12.0 + away}, {-6.0 - width, -4.0 - away}}) {
+                const Box b{x + dx, y + dy - 9, x + dx + width, y + dy + 2};
+                if (!free(b)) continue;
+                taken.push_back(b);
+                return fmt::format("<path d='M{:.1f} {:.1f}L{:.1f} {:.1f}' stroke='#999' stroke-width='0.6'/><text x='{:.1f}' y='{:.1f}' font-size='10'>{}</text>\n",
+                                   x, y, dx > 0 ? b.left : b.right, y + dy - 3, x + dx, y + dy, escaped(text));
+            }
+        return "";
+    }
+    std::string beside(const Curve& c, const Scale& x, const Scale& y) {
+        std::string out;
+        for (size_t i = 0; i < std::min({c.x.size(), c.y.size(), c.labels.size()}); ++i)
+            if (x.shows(c.x[i]) && y.shows(c.y[i])) out += put(c.labels[i], x.pixel(c.x[i]), y.pixel(c.y[i]));
+        return out;
+    }
+};
+
 // Names of curves that have one, on white, in the upper right corner.
 std::string legend(const Chart& chart) {
     size_t longest = 0;
@@ -128,7 +160,13 @@ std::string svg(const Chart& chart) {
                                   Width, Height, Left, escaped(chart.title));
     out += axis(x, false, chart.xLabel) + axis(y, true, chart.yLabel);
     for (size_t k = 0; k < chart.curves.size(); ++k) out += drawn(chart.curves[k], x, y, Colors[k % std::size(Colors)]);
-    return out + legend(chart) + "</svg>\n";
+    Labels labels;
+    size_t longest = 0, named = 0;
+    for (const Curve& c : chart.curves) longest = std::max(longest, c.name.size()), named += !c.name.empty();
+    labels.taken.push_back({std::max(Left + 30, Width - Right - 7.2 * double(longest)) - 36, Top, Width, Top + 10 + 18 * double(named)});
+    out += legend(chart);
+    for (const Curve& c : chart.curves) out += labels.beside(c, x, y);
+    return out + "</svg>\n";
 }
 
 }  // namespace spindrift
