@@ -5,7 +5,7 @@
 namespace spindrift {
 
 struct StressOptions {
-    std::string only, out;      // part of a name; folder of stability.md and stability.json, "" = none
+    std::string only, out;      // part of a case's name, "random" or "maps"; folder of stability.md, stability.json and pictures, "" = none
     int random = 500;           // scenes
     uint64_t seed = 1;          // of the first one
     bool full = false;          // what takes minutes, and the maps

@@ -81,21 +81,23 @@ std::string outside(const Scene& s, Simulation& simulation) {
 StressResult stress(const StressCase& c) {
     Scene scene = c.scene;
     const auto simulation = c.start ? makeSimulation(scene, c.start(scene)) : makeSimulation(scene);
+    HealthGuard guard(*simulation, scene);
     Energy energy{c.scene, *simulation};
     StressResult r;
     r.particles = simulation->fluidCount();
-    constexpr int Stride = 10;
-    for (int step = 0; step < c.steps; step += Stride) {
-        if (c.disturb) c.disturb(*simulation, scene, step);
-        simulation->step(std::min(Stride, c.steps - step));
-        const Measurement m = simulation->measure();
-        r.steps = m.steps;
-        r.energyGain = std::max(r.energyGain, energy.gain(m));
-        r.density = std::max(r.density, m.maxDensityError);
-        if (const std::string said = divergence(scene, m); !said.empty()) {
-            r.verdict = Verdict::Stopped, r.what = said;
+    const int stride = std::max(10, c.steps / 2000);
+    while (r.steps < c.steps) {
+        if (c.disturb) c.disturb(*simulation, scene, int(r.steps)), guard.apply(scene);
+        simulation->step(int(std::min<int64_t>(stride, c.steps - r.steps)));
+        Measurement m = simulation->measure();
+        const HealthGuard::Finding found = guard.look(m);
+        r.steps = m.steps, r.retries = guard.retries();
+        if (found == HealthGuard::Finding::GaveUp) {
+            r.verdict = Verdict::Stopped, r.what = guard.said();
             return r;
         }
+        r.energyGain = std::max(r.energyGain, energy.gain(m));
+        r.density = std::max(r.density, m.maxDensityError);
         r.what = wrong(c, m, r.energyGain);
         if (!r.what.empty()) break;
     }
@@ -104,23 +106,8 @@ StressResult stress(const StressCase& c) {
     return r;
 }
 
-double largestSound(const StressCase& c, const std::string& knob, double least, double most) {
-    auto sound = [&](double value) {
-        StressCase tried = c;
-        setKnob(tried.scene, fmt::format("{}={}", knob, value));
-        checkScene(tried.scene, c.name);
-        return stress(tried).verdict == Verdict::Sound;
-    };
-    if (!sound(least)) return least - 1;
-    if (sound(most)) return most;
-    double low = least, high = most;
-    while (high - low > (most - least) / 20) (sound((low + high) / 2) ? low : high) = (low + high) / 2;
-    return low;
-}
-
 namespace {
 
-// A box of 1 m with one body, coarse.
 Scene box(const char* formulation, const std::vector<std::string>& knobs) {
     Scene s;
     s.compute.backend = Backend::Cpu;
@@ -143,10 +130,9 @@ RunState placed(const Scene& scene, const std::vector<Vec3>& positions) {
     return RunState(std::move(p));
 }
 
-void tilt(Simulation& simulation, Scene& scene, int step) {
+void tilt(Simulation&, Scene& scene, int step) {
     const Vec3 directions[] = {{0, -9.81f, 0}, {9.81f, 0, 0}, {0, 9.81f, 0}, {-7, 0, 7}};
     scene.simulation.gravity = directions[step / 100 % 4];
-    simulation.apply(scene);
 }
 void stirMadly(Simulation& simulation, Scene& scene, int step) {
     const float angle = float(step);
@@ -186,6 +172,10 @@ void addViolent(const char* f, std::vector<StressCase>& out) {
 
 }  // namespace
 
+StressCase boxCase(const std::string& formulation, const std::vector<std::string>& knobs, int steps) {
+    return {formulation, box(formulation.c_str(), knobs), steps, {}, {}, true};
+}
+
 std::vector<StressCase> tortures(bool full) {
     std::vector<StressCase> out;
     for (const char* f : {"wcsph", "delta_sph", "delta_plus"}) addViolent(f, out);
@@ -207,18 +197,58 @@ std::vector<StressCase> tortures(bool full) {
                                    "simulation.kernel=cubic_spline", "simulation.support=2", "time.mode=fixed", "time.step=0.001"}),
                    1000, {}, {}, true});
     if (full) {
-        out.push_back({"a million steps of a still pool", box("wcsph", {R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.4,0.4,0.4]}])", "domain.max=0.4,0.6,0.4"}), 1'000'000, {}, {}, true});
+        // Few enough particles that threads would only wait for each other.
+        out.push_back({"a million steps of a still pool", box("wcsph", {R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.6,0.3,1]}])", "domain.max=0.6,0.5,1",
+                                                                       "simulation.dimensions=2", "compute.threads=1"}), 1'000'000, {}, {}, true});
         out.push_back({"three million particles", box("wcsph", {"simulation.spacing=0.0055", R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.5,1,1]}])"}), 50, {}, {}, true});
     }
     return out;
 }
 
+namespace {
+
+struct Dice {
+    std::mt19937_64 random;
+    double unit() { return double(random() >> 11) / 9007199254740992.0; }
+    float between(double a, double b) { return float(a + (b - a) * unit()); }
+    float logarithmic(double a, double b) { return float(a * std::pow(b / a, unit())); }
+    bool oneIn(int n) { return random() % uint64_t(n) == 0; }
+};
+
+// One scene in six is full to the walls and has the formulation for that; knobs that seldom matter. By dice of their own, so that the
+// other scenes are those that these seeds have always had.
+void turnRareKnobs(Scene& s, uint64_t seed) {
+    Dice dice{std::mt19937_64(seed + 0x9e3779b97f4a7c15u)};
+    if (dice.oneIn(4)) s.fluid.gamma = 1 + int(dice.random() % 7);
+    if (dice.oneIn(4)) s.fluid.densityDiffusion = dice.between(0.02, 0.2);
+    if (dice.oneIn(4)) s.time.cfl = dice.between(0.1, 0.4);
+    if (dice.oneIn(6)) s.simulation.centralRate = dice.between(0.1, 1) * std::sqrt(9.81f / length(s.domain.max - s.domain.min));
+    if (dice.oneIn(10)) s.compute.precision = Precision::Double;
+    if (!dice.oneIn(6)) return;
+    s.simulation.formulation = Formulation::TransportVelocity;
+    s.simulation.centralRate = 0;
+    s.simulation.support = dice.between(2.4, 3.2);
+    s.walls.kind = WallKind::Particles;
+    s.fluid.equationOfState = EquationOfState::Linear;
+    s.fluid.shifting = dice.between(0.5, 2);
+    Vec3 size = s.domain.max - s.domain.min;
+    for (int k = 0; k < s.simulation.dimensions; ++k) size[k] = std::round(size[k] / s.simulation.spacing) * s.simulation.spacing;
+    s.domain.max = s.domain.min + size;
+    Body all = s.fluid.bodies[0];
+    all.shape = Shape::Block, all.min = s.domain.min, all.max = s.domain.max;
+    if (dice.oneIn(2)) all.field = Field::TaylorGreen;
+    if (dice.oneIn(2)) s.walls.movingFace = Face::YMax, s.walls.velocity = {all.velocity.x, 0, 0}, all.velocity = {0, 0, 0};
+    s.fluid.bodies = {all};
+}
+
+}  // namespace
+
 StressCase randomCase(uint64_t seed) {
-    std::mt19937_64 random(seed);
-    auto unit = [&] { return double(random() >> 11) / 9007199254740992.0; };
-    auto between = [&](double a, double b) { return float(a + (b - a) * unit()); };
-    auto logarithmic = [&](double a, double b) { return float(a * std::pow(b / a, unit())); };
-    auto oneIn = [&](int n) { return random() % uint64_t(n) == 0; };
+    Dice dice{std::mt19937_64(seed)};
+    auto& random = dice.random;
+    auto between = [&](double a, double b) { return dice.between(a, b); };
+    auto logarithmic = [&](double a, double b) { return dice.logarithmic(a, b); };
+    auto oneIn = [&](int n) { return dice.oneIn(n); };
     for (;;) {
         Scene s;
         s.name = fmt::format("random {}", seed);
@@ -259,14 +289,15 @@ StressCase randomCase(uint64_t seed) {
             body.velocity = {between(-1, 1) * speed, between(-1, 1) * speed, s.simulation.dimensions == 3 ? between(-1, 1) * speed : 0};
             s.fluid.bodies.push_back(body);
         }
+        turnRareKnobs(s, seed);
         try {
             checkScene(s, s.name);
         } catch (const Error&) { continue; }   // makes no sense: the next throw of the dice
         const int64_t count = countParticles(s).fluid;
         if (count < 20 || count > 8000) continue;
-        // Who falls along a periodic axis falls for ever.
+        // Who slides a lid gives energy; who falls along a periodic axis falls for ever.
         const bool falls = (s.domain.periodicX && s.simulation.gravity.x != 0) || (s.domain.periodicZ && s.simulation.gravity.z != 0);
-        return {s.name, s, 300, {}, {}, !falls};
+        return {s.name, s, 300, {}, {}, !falls && s.walls.movingFace == Face::None};
     }
 }
 

@@ -15,7 +15,7 @@ struct StressCase {
     Scene scene;
     int steps = 300;
     std::function<RunState(const Scene&)> start;                      // empty: as the scene says
-    std::function<void(Simulation&, Scene&, int step)> disturb;       // called before each tenth step; empty: nobody does
+    std::function<void(Simulation&, Scene&, int step)> disturb;       // called before each tenth step, live knobs are taken over; empty: nobody does
     bool energyIsConserved = true;                                    // nobody stirs, tilts or slides
 };
 
@@ -27,6 +27,7 @@ struct StressResult {
     std::string what;             // what was wrong, "" when sound
     int particles = 0;
     int64_t steps = 0;
+    int retries = 0;              // how often the health guard went back
     double energyGain = 0;        // largest gain of kinetic, potential and internal energy / (what of it can move at the start: kinetic,
                                   // internal, M g H, and M (c / 50)^2 / 2)
     double density = 0;           // largest rho / rho0 - 1
@@ -41,8 +42,7 @@ std::vector<StressCase> tortures(bool full);
 // Some valid small scene: the same for the same seed.
 StressCase randomCase(uint64_t seed);
 
-// The largest value of a knob, up to `most`, with which a scene is sound for `steps` steps, by bisection between that and `least`, to
-// a twentieth of the interval; `least` - 1 when not even that is.
-double largestSound(const StressCase&, const std::string& knob, double least, double most);
+// A coarse scene in a box of 1 m, with the knobs set ("path=value").
+StressCase boxCase(const std::string& formulation, const std::vector<std::string>& knobs, int steps);
 
 }  // namespace spindrift
