@@ -198,7 +198,7 @@ std::vector<StressCase> tortures(bool full) {
                    1000, {}, {}, true});
     if (full) {
         // Few enough particles that threads would only wait for each other.
-        out.push_back({"a million steps of a still pool", box("wcsph", {R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.6,0.3,1]}])", "domain.max=0.6,0.5,1",
+        out.push_back({"a million steps of a still pool", box("wcsph", {R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.6,0.3,1]}])", "domain.max=0.6,0.5,1", "simulation.spacing=0.025",
                                                                        "simulation.dimensions=2", "compute.threads=1"}), 1'000'000, {}, {}, true});
         out.push_back({"three million particles", box("wcsph", {"simulation.spacing=0.0055", R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.5,1,1]}])"}), 50, {}, {}, true});
     }

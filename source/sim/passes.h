@@ -396,7 +396,14 @@ template <unsigned what> struct Integrate {
         if constexpr (what & Kick) u = addScaled(u, dt, load(v.fluid.acceleration, i));
         if constexpr (what & DriftDensity) driftDensity(i, dt);
         if constexpr (what & Drift) drift(i, dt, u);
-        store(v.fluid.velocity, i, u);
+        store(v.fluid.velocity, i, resting(i, u));
+    }
+    // Empty slots see each other as well: in thick fluid their speed would grow until it is none, and a neighbour's weight of 0 times that
+    // is no number.
+    HD Vector<R> resting(Quad i, Vector<R> u) const {
+        const auto empty = load(v.fluid.position, i).x > R(farAway);
+        const R zero = 0;
+        return {select(empty, zero, u.x), select(empty, zero, u.y), select(empty, zero, u.z)};
     }
     // Where fluid fills its space and gradients are differences, a pressure that is the same everywhere does nothing, and its
     // drift, the sum of small errors of div u, is taken out by keeping the volume of all particles.

@@ -1,4 +1,5 @@
 // The quick part of `spindrift stress`: nothing goes wrong without the health guard saying so.
+#include "measure/stability_map.h"
 #include "measure/stress.h"
 
 #include "scene/json.h"
@@ -32,9 +33,37 @@ TEST(RandomScenes, AreNeverBroken) {
     }
 }
 
+// Thick fluid in full boxes, whose empty slots once became infinitely fast.
+TEST(RandomScenes, EmptySlotsStayQuiet) {
+    for (uint64_t seed : {138, 618}) {
+        const StressCase c = randomCase(seed);
+        ASSERT_EQ(int(c.scene.simulation.formulation), int(Formulation::TransportVelocity));
+        const StressResult r = stress(c);
+        EXPECT_EQ(int(r.verdict), int(Verdict::Sound)) << "seed " << seed << ": " << r.what;
+        EXPECT_EQ(r.retries, 0) << "seed " << seed;
+    }
+}
+
 TEST(RandomScenes, AreTheSameForTheSameSeed) {
     EXPECT_EQ(writeScene(randomCase(5).scene), writeScene(randomCase(5).scene));
     EXPECT_NE(writeScene(randomCase(5).scene), writeScene(randomCase(6).scene));
+}
+
+// Half as long again is sound too; and the search does find where it ends.
+TEST(StabilityMaps, TheAutomaticStepLiesInside) {
+    for (const char* scene : {"drop impact", "still pool", "vortices in a full box"})
+        for (const StabilityRow& row : stabilityMap(scene, "", "time.step").rows) {
+            EXPECT_TRUE(row.usualIsSound) << scene << ", " << row.formulation;
+            EXPECT_EQ(row.low, row.least) << scene << ", " << row.formulation;
+            EXPECT_GE(row.high, 1.5) << scene << ", " << row.formulation;
+            EXPECT_LT(row.high, row.most) << scene << ", " << row.formulation;
+        }
+}
+TEST(StabilityMaps, AreDrawnRowByRow) {
+    StabilityMap map{"pool", {{"wcsph", "time.cfl", "", 0.4, 0.1, 4, 0.1, 2, true, {{0.4, Verdict::Sound}, {4, Verdict::Broken}}}}};
+    const std::string text = svg(map);
+    EXPECT_NE(text.find(">wcsph time.cfl <"), std::string::npos);
+    EXPECT_EQ(text.find("nan"), std::string::npos);
 }
 
 // The criteria see what they are for.

@@ -24,6 +24,21 @@ TEST(Chart, ShowsEveryCurveAndLeavesOutWhatHasNoPlace) {
     EXPECT_GT(y1, y2);
 }
 
+// Where they stand in the picture; three points at one place, one by itself.
+TEST(Chart, LabelsDoNotCoverEachOther) {
+    Chart chart{"", "x", "y", {{"front", {1, 1, 1, 2}, {1, 1, 1, 2}, Curve::Points, {"first", "second", "third", "alone"}}}};
+    const std::string text = svg(chart);
+    double left[3], top[3];
+    const char* names[] = {"first", "second", "third"};
+    for (int k = 0; k < 3; ++k) {
+        const size_t at = text.find(std::string(">") + names[k] + "</text>");
+        ASSERT_NE(at, std::string::npos) << names[k];
+        const std::string element = text.substr(text.rfind("<text", at));
+        ASSERT_EQ(std::sscanf(element.c_str(), "<text x='%lf' y='%lf'", &left[k], &top[k]), 2) << element.substr(0, 60);
+        for (int o = 0; o < k; ++o) EXPECT_TRUE(std::abs(top[k] - top[o]) > 10 || std::abs(left[k] - left[o]) > 30) << names[k];
+    }
+}
+
 TEST(Chart, CopesWithNothing) {
     EXPECT_NE(svg(Chart{}).find("</svg>"), std::string::npos);
     EXPECT_EQ(svg({"", "", "", {{"flat", {0, 1}, {2, 2}, Curve::Line}}}).find("nan"), std::string::npos);

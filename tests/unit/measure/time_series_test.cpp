@@ -32,6 +32,14 @@ TimeSeries example() {
     return series;
 }
 
+TEST(TimeSeries, ForgetsWhatARunHasGoneBackBefore) {
+    TimeSeries series = example();
+    EXPECT_EQ(series.dropAfter(0.2), 0u);
+    EXPECT_EQ(series.dropAfter(0.15), 1u);
+    EXPECT_EQ(series.size(), 1u);
+    EXPECT_EQ(series.dropAfter(0), 1u);
+}
+
 TEST(TimeSeries, CsvHasUnitsAndEqualRows) {
     const auto lines = linesOf(example().csv());
     ASSERT_EQ(lines.size(), 3u);
