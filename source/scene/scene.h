@@ -13,7 +13,7 @@ enum class Backend { Auto, Cpu, Cuda };
 enum class Precision { Float, Double };
 enum class Simd { Auto, Avx512, Avx2, Sse };
 enum class Formulation { Wcsph, DeltaSph, DeltaPlus, TransportVelocity, Classic };
-enum class Kernel { WendlandC2, CubicSpline };
+enum class Kernel { WendlandC2, CubicSpline, WendlandC4, WendlandC6, QuinticSpline };
 enum class EquationOfState { Tait, Linear };
 enum class WallKind { Reflect, Particles };
 enum class TimeMode { Fixed, Cfl };

@@ -25,7 +25,9 @@ constexpr auto enumNames(Simd) { return std::array{"auto", "avx512", "avx2", "ss
 constexpr auto enumNames(Formulation) {
     return std::array{"wcsph", "delta_sph", "delta_plus", "transport_velocity", "classic"};
 }
-constexpr auto enumNames(Kernel) { return std::array{"wendland_c2", "cubic_spline"}; }
+constexpr auto enumNames(Kernel) {
+    return std::array{"wendland_c2", "cubic_spline", "wendland_c4", "wendland_c6", "quintic_spline"};
+}
 constexpr auto enumNames(EquationOfState) { return std::array{"tait", "linear"}; }
 constexpr auto enumNames(WallKind) { return std::array{"reflect", "particles"}; }
 constexpr auto enumNames(TimeMode) { return std::array{"fixed", "cfl"}; }

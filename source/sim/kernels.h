@@ -26,6 +26,58 @@ struct WendlandC2Kernel {
     }
 };
 
+// Wendland 1995, C4: w = (1-q)^6 (1 + 6q + 35/3 q^2), g = (1-q)^5 (1+5q).
+struct WendlandC4Kernel {
+    static constexpr double norm(int d) { return (d == 2 ? 9 : 495.0 / 32) / 3.14159265358979323846; }
+    static constexpr double gradient = -56.0 / 3;
+    template <class R> HD static R w(R q) {
+        const R t = max(R(1) - q, R(0)), t2 = t * t;
+        return t2 * t2 * t2 * mulAdd(q, mulAdd(R(real(35) / 3), q, R(6)), R(1));
+    }
+    template <class R> HD static R g(R q) {
+        const R t = max(R(1) - q, R(0)), t2 = t * t;
+        return t2 * t2 * t * mulAdd(R(5), q, R(1));
+    }
+};
+
+// Wendland 1995, C6: w = (1-q)^8 (1 + 8q + 25q^2 + 32q^3), g = (1-q)^7 (1 + 7q + 16q^2).
+struct WendlandC6Kernel {
+    static constexpr double norm(int d) { return (d == 2 ? 78.0 / 7 : 1365.0 / 64) / 3.14159265358979323846; }
+    static constexpr double gradient = -22;
+    template <class R> HD static R w(R q) {
+        const R t = max(R(1) - q, R(0)), t2 = t * t, t4 = t2 * t2;
+        return t4 * t4 * mulAdd(q, mulAdd(q, mulAdd(R(32), q, R(25)), R(8)), R(1));
+    }
+    template <class R> HD static R g(R q) {
+        const R t = max(R(1) - q, R(0)), t2 = t * t;
+        return t2 * t2 * t2 * t * mulAdd(q, mulAdd(R(16), q, R(7)), R(1));
+    }
+};
+
+// Morris 1997, quintic spline with s = 3q: w = (3-s)^5 - 6(2-s)^5 + 15(1-s)^5, each bracket only where positive. Their h is
+// a third of the support.
+struct QuinticSplineKernel {
+    static constexpr double norm(int d) { return (d == 2 ? 63.0 / 478 : 9.0 / 40) / 3.14159265358979323846; }
+    static constexpr double gradient = -45;
+    template <class R> HD static R fifth(R t) {
+        const R t2 = t * t;
+        return t2 * t2 * t;
+    }
+    template <class R> HD static R w(R q) {
+        const R s = R(3) * q;
+        const R a = max(R(3) - s, R(0)), b = max(R(2) - s, R(0)), c = max(R(1) - s, R(0));
+        return mulAdd(R(15), fifth(c), negMulAdd(R(6), fifth(b), fifth(a)));
+    }
+    // In the middle the brackets' sum over s, multiplied out.
+    template <class R> HD static R g(R q) {
+        const R s = R(3) * q;
+        const R a = max(R(3) - s, R(0)), b = max(R(2) - s, R(0)), a2 = a * a, b2 = b * b;
+        const R inner = mulAdd(s * s, mulAdd(R(10), s, R(-24)), R(24));
+        const R outer = negMulAdd(R(6), b2 * b2, a2 * a2) / max(s, R(0.5f));
+        return select(s < R(1), inner, outer);
+    }
+};
+
 // Monaghan 1992, cubic spline with s = 2q: w = (2-s)^3/4 - (1-s)^3, each bracket only where positive.
 struct CubicSplineKernel {
     static constexpr double norm(int d) { return (d == 2 ? 40.0 / 7 : 8) / 3.14159265358979323846; }

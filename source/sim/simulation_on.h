@@ -247,7 +247,13 @@ private:
         return densities;
     }
     template <class F> void withKernel(F f) {
-        scene_.simulation.kernel == Kernel::WendlandC2 ? f(WendlandC2Kernel{}) : f(CubicSplineKernel{});
+        switch (scene_.simulation.kernel) {
+            case Kernel::WendlandC2: return f(WendlandC2Kernel{});
+            case Kernel::CubicSpline: return f(CubicSplineKernel{});
+            case Kernel::WendlandC4: return f(WendlandC4Kernel{});
+            case Kernel::WendlandC6: return f(WendlandC6Kernel{});
+            case Kernel::QuinticSpline: return f(QuinticSplineKernel{});
+        }
     }
     // Times survive a change of plan.
     PassTime* timeOf(const char* name) {

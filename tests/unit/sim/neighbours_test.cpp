@@ -91,9 +91,16 @@ struct BruteForce {
     static double w(Kernel k, double q, int dimensions) {
         if (q >= 1) return 0;
         const bool flat = dimensions == 2;
-        if (k == Kernel::WendlandC2) return (flat ? 7 / Pi : 21 / (2 * Pi)) * std::pow(1 - q, 4) * (1 + 4 * q);
+        auto fifth = [&](double knot) { return std::pow(std::max(0.0, knot - 3 * q), 5); };
         const double s = 2 * q;
-        return (flat ? 40 / (7 * Pi) : 8 / Pi) * (s < 1 ? 1 - 1.5 * s * s + 0.75 * s * s * s : 0.25 * std::pow(2 - s, 3));
+        switch (k) {
+            case Kernel::WendlandC2: return (flat ? 7 / Pi : 21 / (2 * Pi)) * std::pow(1 - q, 4) * (1 + 4 * q);
+            case Kernel::WendlandC4: return (flat ? 9 / Pi : 495 / (32 * Pi)) * std::pow(1 - q, 6) * (1 + 6 * q + 35 * q * q / 3);
+            case Kernel::WendlandC6:
+                return (flat ? 78 / (7 * Pi) : 1365 / (64 * Pi)) * std::pow(1 - q, 8) * (1 + 8 * q + 25 * q * q + 32 * q * q * q);
+            case Kernel::QuinticSpline: return (flat ? 63 / (478 * Pi) : 9 / (40 * Pi)) * (fifth(3) - 6 * fifth(2) + 15 * fifth(1));
+            default: return (flat ? 40 / (7 * Pi) : 8 / Pi) * (s < 1 ? 1 - 1.5 * s * s + 0.75 * s * s * s : 0.25 * std::pow(2 - s, 3));
+        }
     }
     // By central difference, so that the analytic gradients are checked as well.
     static double derivative(Kernel k, double q, int d) {
@@ -103,7 +110,8 @@ struct BruteForce {
 
     // W'/q, of particles in one place its limit: viscosity acts between them, pressure has no direction.
     static double slope(Kernel k, double q, int d) {
-        if (q == 0) return (k == Kernel::WendlandC2 ? -20 : -12) * w(k, 0, d);
+        constexpr double AtZero[] = {-20, -12, -56.0 / 3, -22, -180.0 / 11};
+        if (q == 0) return AtZero[int(k)] * w(k, 0, d);
         return derivative(k, q, d) / q;
     }
 
@@ -205,6 +213,9 @@ TEST_P(Spaces, EqualBruteForce) {
     const auto& [space, cloud, engine] = GetParam();
     SCOPED_TRACE(space.name);
     for (Kernel kernel : {Kernel::WendlandC2, Kernel::CubicSpline}) expectBruteForce(2.6f, kernel, cloud, engine, space, 700);
+    if (cloud == Cloud::Random)
+        for (Kernel kernel : {Kernel::WendlandC4, Kernel::WendlandC6, Kernel::QuinticSpline})
+            expectBruteForce(3.2f, kernel, cloud, engine, space, 700);
 }
 INSTANTIATE_TEST_SUITE_P(All, Spaces,
                          testing::Combine(testing::ValuesIn(OtherSpaces),
