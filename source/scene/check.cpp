@@ -71,6 +71,8 @@ void checkDomain(const Scene& scene) {
                "the classic formulation needs a cube; give domain.max - domain.min three equal "
                "sides, or "
                "use simulation.formulation wcsph");
+    if (scene.simulation.formulation == Formulation::Classic && scene.time.integrator != Integrator::SymplecticEuler)
+        refuse("time.integrator", "the classic formulation is stepped by symplectic_euler; use that, or simulation.formulation wcsph");
     const bool periodic = scene.domain.periodicX || scene.domain.periodicY || scene.domain.periodicZ;
     if (scene.simulation.formulation == Formulation::Classic && (dimensions == 2 || periodic))
         refuse("simulation.formulation", "the classic one has three dimensions and walls all round; use wcsph");
@@ -307,11 +309,19 @@ int64_t estimateMemory(const Scene& scene, ParticleCount count) {
     return int64_t(std::min(bytes, 9e18));
 }
 
+// What an integrator keeps over an evaluation of the forces, and its sorted copies, on a GPU.
+static double keptBytes(const Scene& scene) {
+    constexpr double Vector = 2 * 16, Scalar = 2 * 4;
+    if (scene.time.integrator == Integrator::SymplecticEuler) return 0;
+    if (scene.time.integrator == Integrator::VelocityVerlet) return Vector;
+    return 2 * Vector + (carriesDensity(scene) ? Scalar : 0);
+}
+
 int64_t estimateGpuMemory(const Scene& scene, ParticleCount count) {
     const double fluid = double(count.fluid), walls = double(count.walls);
     const double more = (carriesDensity(scene) ? GpuBytesPerCarried : 0) +
-                        (shiftsParticles(scene) ? GpuBytesPerShifted : 0);
-    const double bytes = (GpuBytesPerParticle + more) * fluid + GpuBytesPerWall * walls +
+                         (shiftsParticles(scene) ? GpuBytesPerShifted : 0);
+    const double bytes = (GpuBytesPerParticle + more + keptBytes(scene)) * fluid + GpuBytesPerWall * walls +
                          GpuBytesPerCell * mostCells(scene, fluid + walls) + GpuBytesAnyway;
     return int64_t(std::min(bytes, 9e18));
 }

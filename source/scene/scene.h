@@ -17,6 +17,7 @@ enum class Kernel { WendlandC2, CubicSpline, WendlandC4, WendlandC6, QuinticSpli
 enum class EquationOfState { Tait, Linear };
 enum class WallKind { Reflect, Particles };
 enum class TimeMode { Fixed, Cfl };
+enum class Integrator { SymplecticEuler, VelocityVerlet, PredictorCorrector };
 enum class Shape { Block, Sphere, Cylinder, Wedge, File };
 enum class Axis { X, Y, Z };
 enum class ColorBy { Plain, Velocity, Pressure, Density, Acceleration, Id };
@@ -127,6 +128,7 @@ struct Fluid {
 
 struct TimeKnobs {
     TimeMode mode = TimeMode::Cfl;
+    Integrator integrator = Integrator::SymplecticEuler;
     float step = 0.0005f;                       // s, used by fixed
     float cfl = 0.4f;                           // Courant number: dt <= cfl h / (c + |v|), h = R/2
     float maxStep = 0.01f;                      // s

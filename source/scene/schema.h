@@ -31,6 +31,9 @@ constexpr auto enumNames(Kernel) {
 constexpr auto enumNames(EquationOfState) { return std::array{"tait", "linear"}; }
 constexpr auto enumNames(WallKind) { return std::array{"reflect", "particles"}; }
 constexpr auto enumNames(TimeMode) { return std::array{"fixed", "cfl"}; }
+constexpr auto enumNames(Integrator) {
+    return std::array{"symplectic_euler", "velocity_verlet", "predictor_corrector"};
+}
 constexpr auto enumNames(Shape) { return std::array{"block", "sphere", "cylinder", "wedge", "file"}; }
 constexpr auto enumNames(Axis) { return std::array{"x", "y", "z"}; }
 constexpr auto enumNames(ColorBy) {
@@ -250,6 +253,11 @@ void visitPhysics(S& s, Visitor&& visit) {
           Knob{"m/s", -1e3f, 1e3f, "of the moving face, along itself"});
 
     visit("time.mode", s.time.mode, Knob{"", 0, 0, "fixed step or the largest stable one"});
+    visit("time.integrator", s.time.integrator,
+          Knob{"", 0, 0,
+               "symplectic_euler: first order; velocity_verlet: second order for the same work, of carried density "
+               "nearly; predictor_corrector: second order, evaluates everything twice a step",
+               Restart});
     visit("time.step", s.time.step, Knob{"s", 1e-8f, 1, "time step when fixed"});
     visit("time.cfl", s.time.cfl, Knob{"", 0.01f, 1, "Courant number: share of the stable step"});
     visit("time.max_step", s.time.maxStep, Knob{"s", 1e-8f, 1, "longest step the cfl mode takes"});

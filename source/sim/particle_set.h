@@ -27,7 +27,8 @@ public:
     Particles view() const {
         return {slots_, id_.data(), {position_.data()}, {velocity_.data()}, {acceleration_.data()},
                 {density_.data()}, {inverseDensity_.data()}, {pressureTerm_.data()}, {mass_.data()}, {outward_.data()}, {ownVelocity_.data()},
-                {densityRate_.data()}, {shiftVelocity_.data()}, {shiftAcceleration_.data()}};
+                {densityRate_.data()}, {shiftVelocity_.data()}, {shiftAcceleration_.data()},
+                {kept_.position.data()}, {kept_.velocity.data()}, {kept_.density.data()}};
     }
 
     // Takes over particles with ids firstId, firstId + 1, ...; boundary particles have no velocities. Densities only where they
@@ -63,11 +64,15 @@ public:
         sortedPosition_.resize(vectorSize(slots));
         if (kind_ == Kind::Fluid) sortedVelocity_.resize(vectorSize(slots));
         if (carriesDensity_) sortedDensity_.resize(slots);
+        resizeKept(sortedKept_, slots);
         Particles sorted = view();
         sorted.id = sortedId_.data();
         sorted.position = {sortedPosition_.data()};
         sorted.velocity = {sortedVelocity_.data()};
         sorted.density = {sortedDensity_.data()};
+        sorted.keptPosition = {sortedKept_.position.data()};
+        sorted.keptVelocity = {sortedKept_.velocity.data()};
+        sorted.keptDensity = {sortedKept_.density.data()};
         device_.forEach(slots, Reorder{order_.data(), view(), sorted});
         flip();
         resize(slots);
@@ -79,6 +84,9 @@ public:
         position_.swap(sortedPosition_);
         if (kind_ == Kind::Fluid) velocity_.swap(sortedVelocity_);
         if (carriesDensity_) density_.swap(sortedDensity_);
+        kept_.position.swap(sortedKept_.position);
+        kept_.velocity.swap(sortedKept_.velocity);
+        kept_.density.swap(sortedKept_.density);
         side_ = 1 - side_;
     }
     int side() const { return side_; }
@@ -89,6 +97,9 @@ public:
     // Fluid's density comes from a sum, or goes from step to step with a rate; with shifting its particles leave the fluid's paths.
     void carryDensity() { carriesDensity_ = true; }
     void shift() { shifts_ = true; }
+    // What integrators need besides: a velocity, or all of a state.
+    void keepVelocity() { keepsVelocity_ = true; }
+    void keepState() { keepsVelocity_ = keepsState_ = true; }
     // Particles that never move are sorted once.
     void keepOrder() {
         sortedId_.release(), key_.release(), order_.release();
@@ -155,6 +166,16 @@ private:
         if (carriesDensity_) densityRate_.resize(slots);
         if (shifts_)
             for (auto* field : {&shiftVelocity_, &shiftAcceleration_}) field->resize(vectorSize(slots));
+        resizeKept(kept_, slots);
+    }
+    struct Kept {
+        explicit Kept(Device& d) : position(d), velocity(d), density(d) {}
+        Buffer<real, Device> position, velocity, density;
+    };
+    void resizeKept(Kept& kept, int slots) const {
+        if (keepsVelocity_) kept.velocity.resize(vectorSize(slots));
+        if (keepsState_) kept.position.resize(vectorSize(slots));
+        if (keepsState_ && carriesDensity_) kept.density.resize(slots);
     }
     static Particles onHost(int slots, std::vector<int>& id, std::vector<real>& x, std::vector<real>& u, std::vector<real>& a,
                             std::vector<real>& rho, std::vector<real>& term) {
@@ -190,12 +211,13 @@ private:
     Device& device_;
     Kind kind_;
     bool carriesVelocity_ = kind_ == Kind::Fluid, hasDensity_ = kind_ == Kind::Fluid, carriesDensity_ = false, shifts_ = false,
-         moves_ = false;
+         moves_ = false, keepsVelocity_ = false, keepsState_ = false;
     int slots_ = 0, side_ = 0;
     Buffer<int, Device> id_{device_}, sortedId_{device_}, key_{device_}, order_{device_}, cellStart_{device_};
     Buffer<real, Device> position_{device_}, velocity_{device_}, acceleration_{device_};
     Buffer<real, Device> sortedPosition_{device_}, sortedVelocity_{device_}, sortedDensity_{device_};
     Buffer<real, Device> densityRate_{device_}, shiftVelocity_{device_}, shiftAcceleration_{device_};
+    Kept kept_{device_}, sortedKept_{device_};
     Buffer<real, Device> density_{device_}, inverseDensity_{device_}, pressureTerm_{device_}, mass_{device_}, outward_{device_},
         ownVelocity_{device_};
 };

@@ -44,6 +44,9 @@ struct Reorder {
         store(to.position, i, s < 0 ? Vector<real>{far, far, far} : load(from.position, s));
         if (to.velocity.data) store(to.velocity, i, s < 0 ? Vector<real>{0, 0, 0} : load(from.velocity, s));
         if (to.density.data) store(to.density, i, s < 0 ? real(0) : load(from.density, s));
+        if (to.keptPosition.data) store(to.keptPosition, i, s < 0 ? Vector<real>{far, far, far} : load(from.keptPosition, s));
+        if (to.keptVelocity.data) store(to.keptVelocity, i, s < 0 ? Vector<real>{0, 0, 0} : load(from.keptVelocity, s));
+        if (to.keptDensity.data) store(to.keptDensity, i, s < 0 ? real(0) : load(from.keptDensity, s));
     }
 };
 
@@ -382,21 +385,40 @@ struct StirFluid {
     }
 };
 
-// Symplectic Euler: v += a dt, x += v dt; who leaves the box is put back on its face and bounces, or enters on the other
-// side. In two parts, Kick and Drift, where rates of velocity's neighbours come between: of density, and of shifting.
-enum Advance : unsigned { Kick = 1, Drift = 2, DriftDensity = 4, DriftShifted = 8, KeepVolume = 16 };
+// What integrators are made of: v += a dt (Kick), x += v dt (Drift); who leaves the box is put back on its face and bounces, or
+// enters on the other side. In parts where rates of velocity's neighbours come between: of density, and of shifting.
+enum Advance : unsigned {
+    Kick = 1, HalfKick = 2,                 // half: by dt / 2
+    Drift = 4, HalfDrift = 8,
+    DriftDensity = 16, DriftShifted = 32,   // with Drift: these as well
+    KeepVolume = 64,                        // of all particles, by their densities
+    Keep = 128,                             // first: position, velocity and density are kept
+    Resume = 256,                           // starts from what was kept instead of what is there
+    KeepVelocity = 512,                     // last, but before KickOn
+    KickOn = 1024                           // last: another half kick
+};
 
 template <unsigned what> struct Integrate {
     using Index = Quad;
     using R = Real<Quad>;
     View v;
     HD void operator()(Quad i) const {
-        const R dt = real(v.state->dt);
-        Vector<R> u = load(v.fluid.velocity, i);
+        const R dt = real(v.state->dt), half = real(0.5) * real(v.state->dt), way = what & HalfDrift ? half : dt;
+        constexpr bool resumesVelocity = (what & Resume) && (what & (Kick | HalfKick));
+        Vector<R> u = load(resumesVelocity ? v.fluid.keptVelocity : v.fluid.velocity, i);
+        if constexpr (what & Keep) keep(i, u);
         if constexpr (what & Kick) u = addScaled(u, dt, load(v.fluid.acceleration, i));
-        if constexpr (what & DriftDensity) driftDensity(i, dt);
-        if constexpr (what & Drift) drift(i, dt, u);
+        if constexpr (what & HalfKick) u = addScaled(u, half, load(v.fluid.acceleration, i));
+        if constexpr (what & DriftDensity) driftDensity(i, way);
+        if constexpr (what & (Drift | HalfDrift)) drift(i, way, u);
+        if constexpr (what & KeepVelocity) store(v.fluid.keptVelocity, i, u);
+        if constexpr (what & KickOn) u = addScaled(u, half, load(v.fluid.acceleration, i));
         store(v.fluid.velocity, i, resting(i, u));
+    }
+    HD void keep(Quad i, Vector<R> u) const {
+        store(v.fluid.keptPosition, i, load(v.fluid.position, i));
+        store(v.fluid.keptVelocity, i, u);
+        if constexpr (what & DriftDensity) store(v.fluid.keptDensity, i, load(v.fluid.density, i));
     }
     // Empty slots see each other as well: in thick fluid their speed would grow until it is none, and a neighbour's weight of 0 times that
     // is no number.
@@ -408,7 +430,7 @@ template <unsigned what> struct Integrate {
     // Where fluid fills its space and gradients are differences, a pressure that is the same everywhere does nothing, and its
     // drift, the sum of small errors of div u, is taken out by keeping the volume of all particles.
     HD void driftDensity(Quad i, R dt) const {
-        R rho = mulAdd(dt, load(v.fluid.densityRate, i), load(v.fluid.density, i));
+        R rho = mulAdd(dt, load(v.fluid.densityRate, i), load(what & Resume ? v.fluid.keptDensity : v.fluid.density, i));
         if constexpr (what & KeepVolume) rho = R(real(v.state->volume)) * rho;
         // Empty slots lie in few places and see each other there.
         const auto empty = load(v.fluid.position, i).x > R(farAway);
@@ -416,7 +438,7 @@ template <unsigned what> struct Integrate {
     }
     HD void drift(Quad i, R dt, Vector<R>& u) const {
         const Vector<R> before = load(v.fluid.position, i);
-        Vector<R> x = addScaled(before, dt, u);
+        Vector<R> x = addScaled(what & Resume ? load(v.fluid.keptPosition, i) : before, dt, u);
         if constexpr (what & DriftShifted) {
             x = addScaled(x, dt, load(v.fluid.shiftVelocity, i));
             u = addScaled(u, dt, load(v.fluid.shiftAcceleration, i));

@@ -16,6 +16,7 @@
 #include "sim/simulation.h"
 #include "sim/solids.h"
 
+#include <algorithm>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -31,6 +32,8 @@ public:
           extent_(state.start), grid_(makeGrid(scene, size_t(fluidCount_) + size_t(wallCount_))) {
         if (carriesDensity(scene)) fluid_.carryDensity();
         if (shifts()) fluid_.shift(), walls_.haveDensity();
+        if (scene.time.integrator == Integrator::VelocityVerlet) fluid_.keepVelocity();
+        if (scene.time.integrator == Integrator::PredictorCorrector) fluid_.keepState();
         walls_.upload(wallsAtHome_, {}, {}, fluidCount_);
         solids_.place(scene, wallsAtHome_, solidSizes_, fluidCount_);
         if (wallsMove()) walls_.move();
@@ -141,33 +144,71 @@ private:
         using S = SimulationOn;
         plan_.clear();
         rows_.clear();
-        addPass("solids", &S::moveSolids, Initial::Yes, solids_.moves() ? "" : solids_.count() > 0 ? "no solid moves" : "there are no solids");
-        addPass("sort", &S::sort, Initial::Yes);
-        addPass("neighbours", &S::findNeighbours, Initial::Yes, keepsLists ? "" : "rows of cells are walked instead of lists");
-        carriesDensity(scene_) ? addPass("equation of state", &S::template onFluid<ApplyEquationOfState>, Initial::Yes)
-                               : addPass("density", &S::template onFluid<ComputeDensity<K>>, Initial::Yes);
-        addPass("walls", wallPass<K>(), Initial::Yes, whyNoWallPressure());
-        addPass("forces", forcePass<K>(), Initial::Yes);
+        switch (scene_.time.integrator) {
+            // v += a dt, x += v dt.
+            case Integrator::SymplecticEuler:
+                evaluateForces<K>(Initial::Yes);
+                chooseStep();
+                advance<K, Kick, Drift>({"integrate", "kick", "drift"});
+                break;
+            // Verlet 1967 with velocities: forces at the end of the step with the velocity foreseen there, of which then half is
+            // taken back for half of the new acceleration.
+            case Integrator::VelocityVerlet:
+                chooseStep();
+                advance<K, HalfKick, Drift | KeepVelocity | KickOn>({"integrate", "kick", "drift"});
+                evaluateForces<K>(Initial::Yes);
+                addPass("second kick", &S::template onFluid<Integrate<Resume | HalfKick>>);
+                break;
+            // Half a step ahead; from there the forces and then, with the mean velocity, the rates of the whole step (Monaghan 1989;
+            // the mean of old and new velocity keeps oscillations from growing, as in a leapfrog).
+            case Integrator::PredictorCorrector:
+                evaluateForces<K>(Initial::Yes);
+                chooseStep();
+                advance<K, 0, Keep | HalfDrift | KickOn>({"predict", "", "predict"});
+                evaluateForces<K>(Initial::No);
+                addPass("extremes", &S::countCorrection, Initial::No, keepsLists ? "" : noLists);
+                advance<K, Resume | HalfKick, Resume | Drift | KickOn>({"correct", "second kick", "correct"});
+                break;
+        }
         noteTerms(OptionalTerms{});
+        addPass("solid collisions", &S::template onFluid<KeepOutOfSolids>, Initial::No, solids_.count() > 0 ? "" : "there are no solids");
+        measureLoads_ = loadPass<K>();
+        sortsInStep_ = int(std::count_if(plan_.begin(), plan_.end(), [](const Row& row) { return row.run == &S::sort; }));
+        for (Row& row : plan_) row.time = timeOf(row.name);
+    }
+    // Acceleration of where the particles are.
+    template <class K> void evaluateForces(Initial initial) {
+        using S = SimulationOn;
+        addPass("solids", initial == Initial::Yes ? &S::moveSolids : &S::moveSolidsHalfWay, initial,
+                solids_.moves() ? "" : solids_.count() > 0 ? "no solid moves" : "there are no solids");
+        addPass("sort", &S::sort, initial);
+        addPass("neighbours", &S::findNeighbours, initial, keepsLists ? "" : noLists);
+        carriesDensity(scene_) ? addPass("equation of state", &S::template onFluid<ApplyEquationOfState>, initial)
+                               : addPass("density", &S::template onFluid<ComputeDensity<K>>, initial);
+        addPass("walls", wallPass<K>(), initial, whyNoWallPressure());
+        addPass("forces", forcePass<K>(), initial);
+    }
+    void chooseStep() {
+        using S = SimulationOn;
         addPass("extremes", fillsSpace() ? &S::findExtremes<true> : &S::findExtremes<false>, Initial::No,
                 keepsLists || shifts() || constants_.fixedStep <= 0 ? "" : "the time step is fixed (time.mode)");
         addPass("time step", &S::chooseTimeStep);
         addPass("stir", &S::template onFluid<StirFluid>, Initial::No, stir_.radius > 0 ? "" : "nobody stirs");
-        if (!carriesDensity(scene_)) {
-            addPass("integrate", &S::template onFluid<Integrate<Kick | Drift>>);
-        } else {
-            addPass("kick", &S::template onFluid<Integrate<Kick>>);
-            addPass(shifts() ? "transport" : "density rate", ratePass<K>());
-            addPass("drift", fillsSpace() ? &S::template onFluid<Integrate<Drift | DriftDensity | DriftShifted | KeepVolume>>
-                             : shifts()   ? &S::template onFluid<Integrate<Drift | DriftDensity | DriftShifted>>
-                                          : &S::template onFluid<Integrate<Drift | DriftDensity>>);
-        }
-        addPass("solid collisions", &S::template onFluid<KeepOutOfSolids>, Initial::No, solids_.count() > 0 ? "" : "there are no solids");
-        measureLoads_ = loadPass<K>();
-        for (Row& row : plan_) row.time = timeOf(row.name);
+    }
+    struct Names { const char *both, *kick, *drift; };
+    // In one pass; where density is carried in two, between which its rate comes.
+    template <class K, unsigned kick, unsigned drift> void advance(Names names) {
+        using S = SimulationOn;
+        if (!carriesDensity(scene_)) return addPass(names.both, &S::template onFluid<Integrate<kick | drift>>);
+        if constexpr (kick != 0) addPass(names.kick, &S::template onFluid<Integrate<kick>>);
+        addPass(shifts() ? "transport" : "density rate", ratePass<K>());
+        addPass(names.drift, fillsSpace() ? &S::template onFluid<Integrate<drift | DriftDensity | DriftShifted | KeepVolume>>
+                             : shifts()   ? &S::template onFluid<Integrate<drift | DriftDensity | DriftShifted>>
+                                          : &S::template onFluid<Integrate<drift | DriftDensity>>);
     }
     void addPass(const char* name, PassFunction run, Initial initial = Initial::No, const char* skipped = "") {
-        rows_.push_back({name, skipped});
+        const bool said = std::any_of(rows_.begin(), rows_.end(), [&](const PlanRow& r) { return r.name == name && !r.skipped.empty(); });
+        if (!said) rows_.push_back({name, skipped});
         if (!*skipped) plan_.push_back({name, run, initial});
     }
     template <class K> PassFunction wallPass() const {
@@ -222,6 +263,7 @@ private:
     void stepFromRecording() {
         auto& recording = recordings_[2 * walls_.side() + fluid_.side()];
         if (device_.replay(recording)) {
+            if (sortsInStep_ % 2 == 0) return;
             fluid_.flip();
             if (solids_.moves()) walls_.flip();
             return;
@@ -272,8 +314,10 @@ private:
     // Order and lists hold until two particles may have come closer by the skin.
     bool nothingMovedFar() const { return keepsLists && travel_ < skin() / 2; }
     float skin() const { return scene_.compute.skin * supportRadius(scene_); }
-    void moveSolids() {
-        solids_.move(clock_.data());
+    void moveSolids() { placeSolids(0); }
+    void moveSolidsHalfWay() { placeSolids(0.5); }   // the clock is at the step's end
+    void placeSolids(double stepsBack) {
+        solids_.move(clock_.data(), stepsBack);
         solids_.placeWalls(view());
     }
     void sort() {
@@ -299,7 +343,18 @@ private:
     }
     void chooseTimeStep() {
         device_.forEach(1, ChooseTimeStep{view(), extremes_.data()});
-        if constexpr (keepsLists) travel_ += clock_.data()->dt * largestSpeed(clock_.data()->dt);
+        const double share = scene_.time.integrator == Integrator::PredictorCorrector ? 0.5 : 1;
+        if constexpr (keepsLists) travel_ += share * clock_.data()->dt * largestSpeed(clock_.data()->dt);
+    }
+    // From the middle of the step to its end, where the middle's accelerations lead: dt/2 v + dt^2/2 a, and a shift that may
+    // turn round.
+    void countCorrection() {
+        findExtremes<false>();
+        if constexpr (!keepsLists) return;
+        const StepState& clock = *clock_.data();
+        const double start = std::max<double>(clock.speed, length(stir_.velocity)), pull = std::sqrt(extremes_.data()->acceleration2);
+        const double own = 0.5 * (start + clock.dt * pull) + (shifts() ? 0.75 * clock.speed : 0);
+        travel_ += clock.dt * std::max(own, 0.5 * double(solids_.largestSpeed()));
     }
     // Of any particle at the end of a step of length dt, stirring included.
     double largestSpeed(double dt) const {
@@ -384,7 +439,9 @@ private:
     Buffer<Vertex, Device> staging_{device_};   // for vertices that the host is to have
     bool measureNext_ = true;
     typename Device::Recording recordings_[4];
+    int sortsInStep_ = 1;       // each exchanges the particles' two sides of buffers
     static constexpr bool keepsLists = clusterSize > 1;
+    static constexpr const char* noLists = "rows of cells are walked instead of lists";
     double travel_ = 1e30;      // m, bound of any particle's way since the lists were built
     Boxes boxes_, wallBoxes_;
     NeighbourLists fluidNearFluid_, wallsNearFluid_, fluidNearWalls_, wallsNearWalls_;

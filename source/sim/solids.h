@@ -27,9 +27,10 @@ struct MoveSolids {
     SolidState* solids;
     const MotionKey* keys;
     const StepState* state;
+    double stepsBack;   // from the clock's time
     HD void operator()(int i) const {
         SolidState& s = solids[i];
-        const double time = state->time;
+        const double time = state->time - stepsBack * state->dt;
         int next = s.firstKey;
         while (next < s.endKey && keys[next].time <= time) ++next;
         const bool rests = next == s.firstKey || next == s.endKey;
@@ -239,7 +240,9 @@ public:
     double largestSpeed() const { return speed_; }
     SolidState* data() { return states_.data(); }
 
-    void move(const StepState* state) { device_.forEach(count_, MoveSolids{states_.data(), keys_.data(), state}); }
+    void move(const StepState* state, double stepsBack) {
+        device_.forEach(count_, MoveSolids{states_.data(), keys_.data(), state, stepsBack});
+    }
     void placeWalls(const View& v) { device_.forEach(v.walls.slots, PlaceWalls{v, home()}); }
     void keepMasses(const Particles& walls) { device_.forEach(walls.slots, KeepWallMass{walls, home()}); }
     // Of particles that stay where they are nothing is needed any more once they are placed.

@@ -32,6 +32,9 @@ struct Particles {
     ScalarField densityRate;       // kg/(m^3 s), where density is carried
     VectorField shiftVelocity;     // m/s, where particles are shifted: how much faster than the fluid they move,
     VectorField shiftAcceleration; // m/s^2, and what a particle's velocity changes by for being elsewhere
+    VectorField keptPosition;      // m, what the integrator keeps while forces are evaluated elsewhere
+    VectorField keptVelocity;      // m/s
+    ScalarField keptDensity;       // kg/m^3
 };
 
 // Cells are thin along x and a few particles wide along y and z: a row of cells is one stretch of memory.
