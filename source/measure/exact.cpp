@@ -1,4 +1,8 @@
+#define SPINDRIFT_REAL double
+#define LANES exactLanes
 #include "measure/exact.h"
+
+#include "sim/kernels.h"
 
 #include <cmath>
 #include <numbers>
@@ -55,6 +59,21 @@ void OscillatingDrop::advance(double dt) {
         s = {s.a + h / 6 * (k1.a + 2 * k2.a + 2 * k3.a + k4.a), s.rate + h / 6 * (k1.rate + 2 * k2.rate + 2 * k3.rate + k4.rate)};
     }
     a = s.a, rate = s.rate;
+}
+
+// Gradients as sum V f(x_j) dW/dx, Laplacians as Morris 1997, both scaled so that lines and parabolas are exact, as simulations do.
+LatticeWave latticeWave(Kernel kernel, int dimensions, double support, double kdx) {
+    const int n = int(support) + 1, across = dimensions == 3 ? n : 0;
+    double sine = 0, cosine = 0, line = 0;
+    exactLanes::withKernel(kernel, [&](auto one) {
+        for (int z = -across; z <= across; ++z)
+            for (int y = -n; y <= n; ++y)
+                for (int x = -n; x <= n; ++x) {
+                    const double g = decltype(one)::g(std::sqrt(double(x * x + y * y + z * z)) / support);
+                    sine += g * x * std::sin(kdx * x), cosine += 2 * g * (1 - std::cos(kdx * x)), line += g * x * x;
+                }
+    });
+    return {sine / line, cosine / line};
 }
 
 }  // namespace spindrift

@@ -1,6 +1,7 @@
 #pragma once
 // Flows whose solution is known. SI units, or any consistent ones.
 #include "core/vec.h"
+#include "scene/scene.h"
 
 namespace spindrift {
 
@@ -24,5 +25,10 @@ struct OscillatingDrop {
     static constexpr double period = 4.827343;   // s, of both
     void advance(double dt);             // s
 };
+
+// What sums over a kernel's neighbours make of a wave sin(kx) along x on a lattice: k and k^2 as they see them, times dx and dx^2.
+// R / dx is the support.
+struct LatticeWave { double k, k2; };
+LatticeWave latticeWave(Kernel kernel, int dimensions, double support, double kdx);
 
 }  // namespace spindrift

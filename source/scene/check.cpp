@@ -146,6 +146,9 @@ void checkBody(const Scene& scene, size_t index) {
                 fmt::format("spans {} to {} m along {}, outside the domain's {} to {} m; move it "
                             "inside",
                             low[k], high[k], axis, scene.domain.min[k], scene.domain.max[k]));
+        if (body.field == Field::SoundWave && !(carriesDensity(scene) && (scene.fluid.soundSpeed > 0 || scene.fluid.stiffness > 0)))
+            refuse(bodyPath(index) + ".field", "a sound wave needs a fluid.sound_speed, and a formulation that carries density: "
+                                               "delta_sph or transport_velocity");
         if (latticePlanes(scene, body, k) == 0)
             refuse(
                 bodyPath(index),

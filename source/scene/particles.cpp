@@ -153,6 +153,12 @@ Start taylorGreen(const Scene& scene, double amplitude, Vec3d p) {
             -0.25 * scene.fluid.restDensity * amplitude * amplitude * (std::cos(2 * x) + std::cos(2 * y))};
 }
 
+// Travelling along x, one wave length in the domain: u = U sin kx, p = rho0 c u.
+Start soundWave(const Scene& scene, double amplitude, Vec3d p) {
+    const double u = amplitude * std::sin(2 * std::numbers::pi * p.x / domainSize(scene).x);
+    return {{u, 0, 0}, scene.fluid.restDensity * soundSpeed(scene, {}) * u};
+}
+
 // Linear in the distance from the body's centre. A stretching drop in a central force field has its exact pressure
 // (Monaghan and Rafiee 2013), which is 0 on its surface.
 Start linearField(const Scene& scene, const Body& body, double amplitude, Vec3d r) {
@@ -180,6 +186,7 @@ Start startOf(const Scene& scene, const Body& body, Vec3d p) {
     const double amplitude = length(toDouble(body.velocity));
     Start start{toDouble(body.velocity)};
     if (body.field == Field::TaylorGreen) start = taylorGreen(scene, amplitude, p);
+    else if (body.field == Field::SoundWave) start = soundWave(scene, amplitude, p);
     else if (body.field != Field::Uniform) start = linearField(scene, body, amplitude, r);
     if (body.pressure == StartPressure::Hydrostatic) start.pressure += hydrostatic(scene, body, r);
     return start;

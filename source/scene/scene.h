@@ -21,7 +21,7 @@ enum class Integrator { SymplecticEuler, VelocityVerlet, PredictorCorrector };
 enum class Shape { Block, Sphere, Cylinder, Wedge, File };
 enum class Axis { X, Y, Z };
 enum class ColorBy { Plain, Velocity, Pressure, Density, Acceleration, Id };
-enum class Field { Uniform, TaylorGreen, Stretching, Rotation, Shear };
+enum class Field { Uniform, TaylorGreen, Stretching, Rotation, Shear, SoundWave };
 enum class StartPlaces { Lattice, Relaxed };
 enum class StartPressure { None, Hydrostatic };
 enum class Face { None, XMin, XMax, YMin, YMax, ZMin, ZMax };

@@ -41,7 +41,7 @@ constexpr auto enumNames(ColorBy) {
 }
 constexpr auto enumNames(ColorMap) { return std::array{"viridis", "cividis", "turbo", "coolwarm"}; }
 constexpr auto enumNames(Field) {
-    return std::array{"uniform", "taylor_green", "stretching", "rotation", "shear"};
+    return std::array{"uniform", "taylor_green", "stretching", "rotation", "shear", "sound_wave"};
 }
 constexpr auto enumNames(StartPlaces) { return std::array{"lattice", "relaxed"}; }
 constexpr auto enumNames(StartPressure) { return std::array{"none", "hydrostatic"}; }
@@ -88,7 +88,7 @@ void visitMember(B& b, const std::string& at, Visitor&& visit) {
     visit(at + ".field", b.field,
           Knob{"", 0, 0,
                "velocity at the start: the same everywhere, or a flow of that amplitude: Taylor-Green "
-               "vortices as wide as the domain; stretching along x, rotation or shear in x and y, "
+               "vortices as wide as the domain; a sound wave as long as the domain that travels along x; stretching along x, rotation or shear in x and y, "
                "about the body's centre, with that speed at the end of its largest half side",
                Restart});
     visit(at + ".pressure", b.pressure,

@@ -9,6 +9,7 @@
 #endif
 
 #include "core/lanes.h"
+#include "scene/scene.h"
 
 namespace spindrift::LANES {
 
@@ -92,6 +93,18 @@ struct CubicSplineKernel {
         return select(s < R(1), inner, outer);
     }
 };
+
+// Calls f with the kernel of that name.
+template <class F> auto withKernel(Kernel kernel, F f) {
+    switch (kernel) {
+        case Kernel::CubicSpline: return f(CubicSplineKernel{});
+        case Kernel::WendlandC4: return f(WendlandC4Kernel{});
+        case Kernel::WendlandC6: return f(WendlandC6Kernel{});
+        case Kernel::QuinticSpline: return f(QuinticSplineKernel{});
+        case Kernel::WendlandC2: break;
+    }
+    return f(WendlandC2Kernel{});
+}
 
 }  // namespace spindrift::LANES
 

@@ -58,7 +58,7 @@ public:
     void apply(const Scene& scene) override {
         scene_ = scene;
         if (fluidSticks()) walls_.carryVelocity();
-        withKernel([&](auto kernel) {
+        withKernel(scene_.simulation.kernel, [&](auto kernel) {
             using K = decltype(kernel);
             constants_ = makeConstants<K>(scene_, extent_);
             makePlan<K>();
@@ -288,15 +288,6 @@ private:
         densities.resize(state.particles.positions.size(), float(constants_.restDensity));
         return densities;
     }
-    template <class F> void withKernel(F f) {
-        switch (scene_.simulation.kernel) {
-            case Kernel::WendlandC2: return f(WendlandC2Kernel{});
-            case Kernel::CubicSpline: return f(CubicSplineKernel{});
-            case Kernel::WendlandC4: return f(WendlandC4Kernel{});
-            case Kernel::WendlandC6: return f(WendlandC6Kernel{});
-            case Kernel::QuinticSpline: return f(QuinticSplineKernel{});
-        }
-    }
     // Times survive a change of plan.
     PassTime* timeOf(const char* name) {
         for (PassTime& t : times_)
@@ -368,7 +359,7 @@ private:
         walls_.sort(grid_);
         wallBoxes_.compute(device_, walls_.view());
         wallsNearWalls_.build(device_, grid_, supportRadius(scene_), wallBoxes_, walls_.view(), wallBoxes_, walls_.cellStart());
-        withKernel([&](auto kernel) {
+        withKernel(scene_.simulation.kernel, [&](auto kernel) {
             device_.forEach(walls_.slots(), ComputeWallMass<decltype(kernel)>{view()});
         });
         wallsNearWalls_ = {};

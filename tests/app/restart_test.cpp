@@ -66,6 +66,19 @@ TEST_F(Restart, ParticlesOfOneRunBeginAnother) {
     expectMistake(tank + "--steps 1 --set 'fluid.bodies=[{\"shape\":\"file\",\"path\":\"gone.csv\"}]'", Exit::Scene, "gone.csv: no such file");
 }
 
+TEST_F(Restart, EveryIntegratorGoesOn) {
+    for (const char* scene : {"test/dam_break_small", "test/solids_small", "validation/taylor_green"})
+        for (const char* integrator : {"velocity_verlet", "predictor_corrector"}) {
+            const std::string run = std::string(scene) + " --headless --backend cpu --quiet --set output.checkpoint_every=0.02 "
+                                    "--set time.integrator=" + integrator;
+            ASSERT_EQ(call(run + " --time 0.06 --checkpoint whole.h5").code, 0);
+            ASSERT_EQ(call(run + " --time 0.02 --checkpoint half.h5").code, 0);
+            ASSERT_EQ(call("half.h5 --headless --quiet --time 0.06 --checkpoint rest.h5").code, 0);
+            expectSame(read("whole.h5"), read("rest.h5"));
+            EXPECT_EQ(read("whole.h5").state.densities, read("rest.h5").state.densities);
+        }
+}
+
 TEST_F(Restart, LiveKnobsMayChangeOthersNot) {
     ASSERT_EQ(call(Run + "--steps 5 --checkpoint a.h5").code, 0);
     EXPECT_EQ(call("a.h5 --headless --quiet --steps 2 --set fluid.viscosity=0.2").code, 0);

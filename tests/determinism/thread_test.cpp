@@ -9,9 +9,10 @@
 namespace spindrift {
 namespace {
 
-uint64_t hashAfter(const std::string& file, int threads, int steps, int change = 0) {
+uint64_t hashAfter(const std::string& file, int threads, int steps, int change = 0, Integrator integrator = {}) {
     Scene scene = loadScene(std::string(SPINDRIFT_SOURCE_DIR) + "/configs/" + file);
     scene.compute.threads = threads;
+    scene.time.integrator = integrator;
     scene.simulation.gravity.x += 1e-3f * float(change);
     auto simulation = makeSimulation(scene);
     simulation->step(steps);
@@ -22,9 +23,9 @@ uint64_t hashAfter(const std::string& file, int threads, int steps, int change =
     return hash;
 }
 
-class Determinism : public testing::TestWithParam<const char*> {};
+class Threads : public testing::TestWithParam<const char*> {};
 
-TEST_P(Determinism, SameBitsForOneTwoAndThreeThreads) {
+TEST_P(Threads, SameBitsForOneTwoAndThreeThreads) {
     const uint64_t one = hashAfter(GetParam(), 1, 200);
     EXPECT_EQ(one, hashAfter(GetParam(), 2, 200));
     EXPECT_EQ(one, hashAfter(GetParam(), 3, 200));
@@ -32,7 +33,16 @@ TEST_P(Determinism, SameBitsForOneTwoAndThreeThreads) {
     EXPECT_NE(one, hashAfter(GetParam(), 1, 200, 1)) << "the hash does not notice another flow";
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Determinism,
+TEST(Determinism, SameBitsWithEachIntegrator) {
+    for (const char* file : {"test/dam_break_small.json", "validation/cavity.json"})
+        for (Integrator i : {Integrator::VelocityVerlet, Integrator::PredictorCorrector}) {
+            const uint64_t one = hashAfter(file, 1, 60, 0, i);
+            EXPECT_EQ(one, hashAfter(file, 3, 60, 0, i)) << file;
+            EXPECT_NE(one, hashAfter(file, 1, 60)) << "the integrator makes no difference";
+        }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Threads,
                          testing::Values("test/dam_break_small.json", "test/ball_drop_small.json", "test/historical_small.json",
                                          "validation/hydrostatic.json", "validation/cavity.json", "test/solids_small.json"));
 

@@ -39,9 +39,9 @@ TEST_P(Validation, MeetsItsTargets) {
         std::printf("%s at %d: %s %.3g %s\n", c.name.c_str(), resolution, run.metrics[0].name.c_str(), errors.back(),
                     run.metrics[0].unit.c_str());
     }
-    // Where two resolutions are run, the error falls: 1.5 for flows between plates, 1 for Taylor-Green.
+    // Where two resolutions are run, the error falls: 1.5 for flows between plates and sound, 1 for Taylor-Green and on uneven particles.
     const double order = errors.size() == 2 ? std::log2(errors[0] / errors[1]) : 9;
-    EXPECT_GT(order, c.name.starts_with("taylor") ? 1.0 : 1.5);
+    EXPECT_GT(order, c.name.starts_with("taylor") || c.name == "operators" ? 1.0 : 1.5);
 }
 
 std::string nameOf(const testing::TestParamInfo<ValidationCase>& info) { return info.param.name; }

@@ -26,6 +26,17 @@ TEST(Exact, TaylorGreenSolvesNavierStokes) {
     }
 }
 
+// Long waves are seen as they are, with an error that goes with the square of their wave number; the shortest have no slope.
+TEST(Exact, LatticesSeeLongWavesBest) {
+    for (Kernel kernel : {Kernel::WendlandC2, Kernel::QuinticSpline}) {
+        const auto missing = [&](double kdx) { return 1 - latticeWave(kernel, 2, 2.6, kdx).k / kdx; };
+        EXPECT_NEAR(missing(0.1) / missing(0.05), 4, 0.05);
+        EXPECT_LT(missing(0.1), 0.01);
+        EXPECT_NEAR(latticeWave(kernel, 3, 2.6, 0.01).k2, 1e-4, 1e-8);
+        EXPECT_NEAR(latticeWave(kernel, 2, 2.6, M_PI).k, 0, 1e-12);
+    }
+}
+
 // Table values of Morris, Fox and Zhu's series, L = 1e-3 m, nu = 1e-6 m^2/s, V0 = 1.25e-5 m/s, at nu t / L^2 = 0.1125.
 TEST(Exact, FlowsBetweenPlatesStartAtRestAndEndSteady) {
     const double L = 1e-3, nu = 1e-6, F = 1e-4, V = 1.25e-5;

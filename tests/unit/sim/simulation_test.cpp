@@ -105,7 +105,7 @@ TEST(Box, NobodyLeavesAndRestitutionHolds) {
     Placement p;
     p.positions = {{0.5f, 0.5f, 0.5f}};
     p.velocities = {{2, 0, 0}};
-    scene.time = {TimeMode::Fixed, 0.01f, 0.4f, 0.1f};
+    scene.time = {.mode = TimeMode::Fixed, .step = 0.01f, .cfl = 0.4f, .maxStep = 0.1f};
     const auto simulation = makeSimdSimulation(scene, p, 1);
     double fastestBack = 0;
     for (int k = 0; k < 60; ++k) {
@@ -135,7 +135,7 @@ TEST(Stir, DragsTheFluidInItsSphereOnly) {
     Placement still = apart();
     for (Vec3& u : still.velocities) u = {0, 0, 0};
     Scene scene = calm();
-    scene.time = {TimeMode::Fixed, 0.001f, 0.4f, 0.1f};
+    scene.time = {.mode = TimeMode::Fixed, .step = 0.001f, .cfl = 0.4f, .maxStep = 0.1f};
     const auto simulation = makeSimdSimulation(scene, still, 2);
     simulation->stir({{0.05f, 0.05f, 0.05f}, 0.06f, {0, 3, 0}});
     simulation->step(20);
