@@ -122,7 +122,7 @@ TEST(Integrators, StepAsOnTheCpu) {
             const Difference d = difference(scene, *cpu, *gpu);
             EXPECT_LT(d.position, 1e-4) << file;
             EXPECT_LT(d.density, 1e-4) << file;
-            EXPECT_LE(gpu->bytes(), estimateGpuMemory(scene));
+            EXPECT_LE(gpu->bytes(), estimateGpuMemory(scene, countParticles(scene)));
         }
 }
 

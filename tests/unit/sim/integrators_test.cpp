@@ -49,7 +49,7 @@ TEST(Integrators, OrbitsHaveTheirOrder) {
         }
 }
 
-// Viscous Taylor-Green vortices on few particles: velocities at t = 0.1 against steps of a sixteenth.
+// Viscous Taylor-Green vortices on few particles: velocities at t = 0.1 against steps of an eighth.
 std::vector<Particle> vortices(Formulation formulation, Integrator integrator, double step) {
     Scene s = loadScene(SPINDRIFT_SOURCE_DIR "/configs/validation/taylor_green.json");
     s.simulation.formulation = formulation;
@@ -70,16 +70,18 @@ double distance(const std::vector<Particle>& a, const std::vector<Particle>& b) 
 }
 
 TEST(Integrators, FlowsHaveTheirOrder) {
-    constexpr double Step = 1.0 / 1280;
+    constexpr double Step = 1.0 / 640;
     for (Formulation f : {Formulation::Wcsph, Formulation::DeltaSph, Formulation::TransportVelocity}) {
-        const std::vector<Particle> exact = vortices(f, Integrator::PredictorCorrector, Step / 16);
+        const std::vector<Particle> exact = vortices(f, Integrator::PredictorCorrector, Step / 8);
         double before = 1e9;
         for (Integrator i : All) {
             const double coarse = distance(vortices(f, i, Step), exact), fine = distance(vortices(f, i, Step / 2), exact);
             const double order = std::log2(coarse / fine);
             std::printf("%s, %s: %.2e, %.2e, order %.2f\n", enumNames(f)[size_t(f)], enumNames(i)[size_t(i)], coarse, fine, order);
-            EXPECT_GT(order, i == Integrator::SymplecticEuler ? 0.8 : i == Integrator::VelocityVerlet ? 0.8 : 1.7);
-            EXPECT_LT(fine, before) << "a better integrator is no better";
+            const bool second = i != Integrator::SymplecticEuler && (f == Formulation::Wcsph || i == Integrator::PredictorCorrector);
+            // Where particles are shifted the part of the velocity that they are carried through is of first order, and small.
+            EXPECT_GT(order, second && f != Formulation::TransportVelocity ? 1.9 : 0.9);
+            EXPECT_LT(fine, before * (i == Integrator::VelocityVerlet ? 0.7 : 0.5)) << "a better integrator is no better";
             before = fine;
         }
     }
