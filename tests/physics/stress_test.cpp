@@ -62,7 +62,7 @@ TEST(StabilityMaps, TheAutomaticStepLiesInside) {
 TEST(StabilityMaps, AreDrawnRowByRow) {
     StabilityMap map{"pool", {{"wcsph", "time.cfl", "", 0.4, 0.1, 4, 0.1, 2, true, {{0.4, Verdict::Sound}, {4, Verdict::Broken}}}}};
     const std::string text = svg(map);
-    EXPECT_NE(text.find(">wcsph time.cfl <"), std::string::npos);
+    EXPECT_NE(text.find(">wcsph time.cfl<"), std::string::npos);
     EXPECT_EQ(text.find("nan"), std::string::npos);
 }
 
