@@ -302,7 +302,7 @@ template <class Kernel, bool surface> struct ComputeTransport {
         const Vector<R> along = subtractScaled(inside * shift, nu, uneven);
         const R diffused = surface ? two * scale * total(s.laplacian)
                                    : two * correction.perTrace * scale * total(s.laplacian) - dot(uneven, gradRho);
-        const R divergence = surface ? scale * total(s.u.x + s.v.y + s.w.z) - two * dot(shift, inward) : gradU.x + gradV.y + gradW.z;
+        const R divergence = surface ? scale * total(s.u.x + s.v.y + s.w.z) - roomLost(shift, inward) : gradU.x + gradV.y + gradW.z;
         const R rate = inside * dot(shift, gradRho) - rho * divergence;
         store(v.fluid.densityRate, i, mulAdd(half * R(v.c.diffusion), diffused, rate));
         store(v.fluid.shiftVelocity, i, shift);
@@ -317,6 +317,10 @@ template <class Kernel, bool surface> struct ComputeTransport {
     HD static Vector<R> alongSurface(Vector<R> shift, Vector<R> inward, R inside) {
         const R across = dot(shift, inward) / max(dot(inward, inward), R(real(1e-20)));
         return subtractScaled(shift, (R(1) - inside) * across, inward);
+    }
+    // 1/s. Where fluid is torn its pressure would fall on and on: at most twice what swinging drops need, 0.02 U / R.
+    HD R roomLost(Vector<R> shift, Vector<R> inward) const {
+        return max(R(real(2)) * dot(shift, inward), R(real(-0.04) * real(v.state->speed) / v.c.support));
     }
     // At most half as fast as the fastest fluid.
     HD Vector<R> limitedShift(Vector<R> shift) const {
