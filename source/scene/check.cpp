@@ -158,6 +158,17 @@ void checkBody(const Scene& scene, size_t index) {
     }
 }
 
+// Names of probes and solids begin the names of columns.
+template <class Member>
+void requireColumnName(const std::vector<Member>& list, size_t index, const std::string& path) {
+    const std::string &name = list[index].name, at = fmt::format("{}[{}].name", path, index);
+    constexpr const char* Letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+    if (name.empty() || name.find_first_not_of(Letters) != std::string::npos)
+        refuse(at, fmt::format("\"{}\" can't begin a column's name; use letters, digits, _ and -", name));
+    for (size_t other = 0; other < index; ++other)
+        if (list[other].name == name) refuse(at, fmt::format("\"{}\" is the name of {}[{}] too; give each its own", name, path, other));
+}
+
 void checkKeyframes(const Solid& solid, const std::string& path) {
     for (size_t k = 0; k < solid.keyframes.size(); ++k) {
         const Keyframe& key = solid.keyframes[k];
@@ -195,6 +206,7 @@ void checkSolid(const Scene& scene, size_t index) {
         refuse(path + ".axis", "in two dimensions a cylinder is a circle about z; use z");
     if (scene.simulation.dimensions == 2 && (solid.spinAxis != Axis::Z || solid.velocity.z != 0))
         refuse(path, "moves out of the plane, and there are two dimensions; leave z out, and turn about z");
+    if (!solid.name.empty()) requireColumnName(scene.solids, index, "solids");
     checkKeyframes(solid, path);
 }
 
@@ -238,12 +250,7 @@ void checkProbe(const Scene& scene, size_t index) {
     const std::vector<Probe>& probes = scene.output.probes;
     const Probe& probe = probes[index];
     const std::string path = fmt::format("output.probes[{}]", index);
-    constexpr const char* Letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
-    if (probe.name.empty() || probe.name.find_first_not_of(Letters) != std::string::npos)
-        refuse(path + ".name", fmt::format("\"{}\" can't begin a column's name; use letters, digits, _ and -", probe.name));
-    for (size_t other = 0; other < index; ++other)
-        if (probes[other].name == probe.name)
-            refuse(path + ".name", fmt::format("\"{}\" is the name of output.probes[{}] too; give each its own", probe.name, other));
+    requireColumnName(probes, index, "output.probes");
     const bool reads = probe.kind == ProbeKind::Height || probe.kind == ProbeKind::Front;
     if (reads && int(probe.axis) >= scene.simulation.dimensions) refuse(path + ".axis", "there is no z in two dimensions; use x or y");
     if (probe.kind == ProbeKind::Point) requireInside(scene, path + ".position", probe.position);

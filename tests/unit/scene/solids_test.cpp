@@ -147,6 +147,8 @@ TEST(Solids, MistakesAreNamed) {
         {"{" + block + R"(, "keyframes": [[1, 0, 0, 0], [1, 1, 0, 0]]})", "does not come after"},
         {"{" + block + R"(, "keyframes": [[1, 0, 0]]})", "expected keyframes"},
         {"{" + block + R"(, "velocity": [1, 0, 0], "keyframes": [[1, 0, 0, 0]]})", "leave velocity and spin out"},
+        {"{" + block + R"(, "name": "a/b"})", "can't begin a column's name"},
+        {"{" + block + R"(, "name": "a"}, {)" + block + R"(, "name": "a"})", "is the name of solids[0] too"},
         {"{" + block + R"(, "spin": 1e5, "velocity": [1000, 0, 0], "radius": 3})", "unknown key"},
         {"{" + block + R"(, "keyframes": [[0, 0, 0, 0], [1e-6, 1, 0, 0]]})", "faster than 1e4"},
     };
