@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <tuple>
 
 namespace spindrift {
 namespace {
@@ -28,16 +29,34 @@ const Sweep Sweeps[] = {{"taylor_green", {50, 100, 200}}, {"poiseuille_re100", {
 
 const Variant Shipped{"as shipped", {}};
 
-// Formulation x kernel and support x time step; then precision and device.
-std::vector<Variant> variants() {
+Variant operator+(const Variant& a, const Variant& b) {
+    Variant both{a.name + " " + b.name, a.knobs};
+    both.knobs.insert(both.knobs.end(), b.knobs.begin(), b.knobs.end());
+    return both;
+}
+
+// Formulation x kernel and support, with the case's own steps.
+std::vector<Variant> methods() {
+    std::vector<Variant> formulations, kernels, all;
+    for (const auto& [name, knob] : {std::pair{"wcsph", "wcsph"}, {"delta", "delta_sph"}, {"delta+", "delta_plus"}, {"transport", "transport_velocity"}})
+        formulations.push_back({name, {{"simulation.formulation", knob}}});
+    constexpr struct { const char *letters, *knob, *support; } Kernels[] = {
+        {"W2", "wendland_c2", "2"},   {"W2", "wendland_c2", "2.3"}, {"W2", "wendland_c2", "2.6"}, {"W2", "wendland_c2", "3.2"},
+        {"W4", "wendland_c4", "3.2"}, {"W6", "wendland_c6", "3.2"}, {"C", "cubic_spline", "2.6"}, {"Q", "quintic_spline", "3.2"}};
+    for (const auto& k : Kernels)
+        kernels.push_back({fmt::format("{} {}", k.letters, k.support), {{"simulation.kernel", k.knob}, {"simulation.support", k.support}}});
+    for (const Variant& formulation : formulations)
+        for (const Variant& kernel : kernels) all.push_back(formulation + kernel);
+    return all;
+}
+
+// Each of them with other steps.
+std::vector<Variant> steps(const std::vector<Variant>& chosen) {
     std::vector<Variant> all;
-    constexpr std::pair<const char*, const char*> Kernels[] = {{"wendland_c2", "2"}, {"wendland_c2", "2.3"}, {"wendland_c2", "2.6"},
-                                                               {"wendland_c2", "3"}, {"wendland_c2", "3.5"}, {"cubic_spline", "2.6"}};
-    for (const auto& [formulation, name] : {std::pair{"wcsph", "wcsph"}, {"delta_sph", "delta"}, {"delta_plus", "delta+"}, {"transport_velocity", "transport"}})
-        for (const auto& [kernel, support] : Kernels)
-            for (const char* cfl : {"0.2", "0.4", "0.8"})
-                all.push_back({fmt::format("{} {}{} cfl {}", name, *kernel == 'w' ? "W" : "C", support, cfl),
-                               {{"simulation.formulation", formulation}, {"simulation.kernel", kernel}, {"simulation.support", support}, {"time.cfl", cfl}}});
+    for (const auto& [letters, integrator, cfl] : {std::tuple{"E 0.2", "symplectic_euler", "0.2"}, {"E 0.4", "symplectic_euler", "0.4"},
+                                                   {"E 0.8", "symplectic_euler", "0.8"}, {"V 0.4", "velocity_verlet", "0.4"},
+                                                   {"P 0.5", "predictor_corrector", "0.5"}, {"P 1", "predictor_corrector", "1"}})
+        for (const Variant& v : chosen) all.push_back(v + Variant{letters, {{"time.integrator", integrator}, {"time.cfl", cfl}}});
     return all;
 }
 
@@ -67,7 +86,7 @@ constexpr Known Peers[] = {
 struct Point {
     Variant variant;
     ValidationRun run;
-    bool shipped = false, front = false;
+    bool shipped = false, competes = false, front = false;   // competes: for being tried finer
     double error() const { return run.diverged ? std::nan("") : std::abs(run.metrics[0].value); }
     double stepsPerSecond() const { return double(run.cost.steps) * run.cost.particles / run.cost.seconds; }
 };
@@ -95,7 +114,7 @@ void markFront(std::vector<Point>& points) {
 
 // Worth to be tried finer: the front of a resolution, and who is nearly on it.
 std::vector<Variant> survivors(std::vector<Point> points, int resolution) {
-    std::erase_if(points, [&](const Point& p) { return p.run.resolution != resolution || p.shipped || !std::isfinite(p.error()); });
+    std::erase_if(points, [&](const Point& p) { return p.run.resolution != resolution || !p.competes || !std::isfinite(p.error()); });
     std::vector<Variant> kept;
     std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.run.cost.seconds < b.run.cost.seconds; });
     double best = 1e300;
@@ -111,23 +130,27 @@ std::vector<Variant> survivors(std::vector<Point> points, int resolution) {
 
 std::vector<Point> sweep(const ValidationCase& c) {
     std::vector<Point> points;
-    std::vector<Variant> others = variants();
-    for (int resolution : c.resolutions) {
-        Scene shipped;
-        choose(c, Shipped, resolution, shipped);
-        std::vector<Variant> tried{Shipped};
-        for (const Variant& v : machines(shipped)) tried.push_back(v);
-        tried.insert(tried.end(), others.begin(), others.end());
-        for (const Variant& variant : tried) {
+    auto tryAll = [&](const std::vector<Variant>& variants, int resolution, bool compete) {
+        for (const Variant& variant : variants) {
             Scene scene;
             if (!choose(c, variant, resolution, scene)) continue;
-            points.push_back({variant, validate(c, scene, resolution), variant.knobs.empty()});
+            points.push_back({variant, validate(c, scene, resolution), variant.knobs.empty(), compete});
             const Point& p = points.back();
             fmt::print("{:24} {:>5} {:>12.4g} {:>9.2f} {:>9} {:>12.3g} {:>8.1f}\n", variant.name, resolution, p.error(), p.run.cost.seconds,
                        p.run.cost.steps, p.stepsPerSecond(), p.run.cost.megabytes);
             std::fflush(stdout);
         }
-        others = survivors(points, resolution);
+    };
+    std::vector<Variant> best;
+    for (int resolution : c.resolutions) {
+        Scene shipped;
+        choose(c, Shipped, resolution, shipped);
+        tryAll({Shipped}, resolution, false);
+        tryAll(machines(shipped), resolution, false);
+        const bool coarsest = resolution == c.resolutions.front();
+        tryAll(coarsest ? methods() : best, resolution, true);
+        if (coarsest) tryAll(steps(survivors(points, resolution)), resolution, true);
+        best = survivors(points, resolution);
     }
     markFront(points);
     return points;
@@ -162,7 +185,9 @@ Chart chartOf(const ValidationCase& c, const std::vector<Point>& points) {
 std::string table(const ValidationCase& c, const std::vector<Point>& points) {
     const Metric& metric = points.front().run.metrics[0];
     std::string text = fmt::format("\n### {}\n\nError: {}, {}. Resolution: {}. Against {}. **Bold**: on the Pareto front.\n\n"
-                                   "W, C: Wendland C2 or cubic spline kernel, R / dx. Finer resolutions: only what was good at the coarser one.\n\n"
+                                   "W2, W4, W6, C, Q: Wendland C2, C4, C6, cubic or quintic spline kernel, and R / dx. E, V, P: symplectic Euler, velocity "
+                                   "Verlet, predictor-corrector, and cfl; without them the case's own. Other steps: only with the best kernels; finer: "
+                                   "only what was good at the coarser resolution.\n\n"
                                    "| method | resolution | error | seconds | steps | million particle-steps a second | MB |\n"
                                    "|---|---|---|---|---|---|---|\n",
                                    c.title, metric.name, metric.unit, c.length, c.reference);

@@ -5,6 +5,7 @@
 #include "scene/particle_file.h"
 #include "scene/relax.h"
 #include "scene/sample_solid.h"
+#include "scene/start_fields.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,10 +31,6 @@ int64_t planes(double ratio) {
     return std::isfinite(ratio) ? int64_t(std::clamp(ratio, 0.0, MaxPlanes)) : int64_t(MaxPlanes);
 }
 
-Vec3d domainSize(const Scene& scene) {
-    return toDouble(scene.domain.max) - toDouble(scene.domain.min);
-}
-
 // In two dimensions z has one layer.
 bool flat(const Scene& scene, int axis) { return scene.simulation.dimensions == 2 && axis == 2; }
 
@@ -49,12 +46,12 @@ Lattice bodyLattice(const Scene& scene, const Body& body) {
     for (int k = 0; k < 3; ++k) {
         lattice.n[k] = latticePlanes(scene, body, k);
         if (flat(scene, k)) {
-            lattice.first[k] = 0.5 * domainSize(scene)[k];
+            lattice.first[k] = 0.5 * scene.domain.size()[k];
             continue;
         }
-        lattice.first[k] = isCornered(body) ? double(body.min[k]) - origin[k] + 0.5 * dx
-                                                      : double(body.center[k]) - origin[k] -
-                                                            0.5 * dx * double(lattice.n[k] - 1);
+        const double beside = isCornered(body) ? double(body.min[k]) + 0.5 * dx
+                                               : double(body.center[k]) - 0.5 * dx * double(lattice.n[k] - 1);
+        lattice.first[k] = beside - origin[k];
     }
     return lattice;
 }
@@ -92,7 +89,7 @@ int64_t wallLayers(const Scene& scene, int axis) {
 // original's floats do.
 Lattice wallLattice(const Scene& scene) {
     Lattice lattice{};
-    const Vec3d size = domainSize(scene);
+    const Vec3d size = scene.domain.size();
     const double dx = scene.simulation.spacing;
     const float R = supportRadius(scene);
     for (int k = 0; k < 3; ++k) {
@@ -142,56 +139,6 @@ void placeShell(const Shell& shell, std::vector<Vec3>& out) {
             }
 }
 
-// What the fluid does at the start at one point: m/s, Pa.
-struct Start { Vec3d velocity; double pressure = 0; };
-
-// Taylor and Green 1937, one wave length along each side of the domain.
-Start taylorGreen(const Scene& scene, double amplitude, Vec3d p) {
-    const Vec3d size = domainSize(scene);
-    const double turn = 2 * std::numbers::pi, x = turn * p.x / size.x, y = turn * p.y / size.y;
-    return {amplitude * Vec3d{-std::cos(x) * std::sin(y), std::sin(x) * std::cos(y), 0},
-            -0.25 * scene.fluid.restDensity * amplitude * amplitude * (std::cos(2 * x) + std::cos(2 * y))};
-}
-
-// Travelling along x, one wave length in the domain: u = U sin kx, p = rho0 c u.
-Start soundWave(const Scene& scene, double amplitude, Vec3d p) {
-    const double u = amplitude * std::sin(2 * std::numbers::pi * p.x / domainSize(scene).x);
-    return {{u, 0, 0}, scene.fluid.restDensity * soundSpeed(scene, {}) * u};
-}
-
-// Linear in the distance from the body's centre. A stretching drop in a central force field has its exact pressure
-// (Monaghan and Rafiee 2013), which is 0 on its surface.
-Start linearField(const Scene& scene, const Body& body, double amplitude, Vec3d r) {
-    const Vec3d half = halfExtent(body);
-    const double reach = std::max(half.x, half.y), rate = amplitude / reach, omega = scene.simulation.centralRate;
-    if (body.field == Field::Rotation) return {rate * Vec3d{-r.y, r.x, 0}};
-    if (body.field == Field::Shear) return {rate * Vec3d{r.y, 0, 0}};
-    const double depth = reach * reach - r.x * r.x - r.y * r.y;   // m^2
-    return {rate * Vec3d{r.x, -r.y, 0}, 0.5 * scene.fluid.restDensity * (rate * rate + omega * omega) * std::max(depth, 0.0)};
-}
-
-// Of the fluid above p in the same body, for a free surface at that body's upper end against gravity.
-double hydrostatic(const Scene& scene, const Body& body, Vec3d r) {
-    const Vec3d g = toDouble(scene.simulation.gravity), half = halfExtent(body);
-    double head = 0;   // m^2/s^2
-    for (int k = 0; k < scene.simulation.dimensions; ++k) head += g[k] * r[k] + std::abs(g[k]) * half[k];
-    return scene.fluid.restDensity * head;
-}
-
-Vec3d centerOf(const Scene& scene, const Body& body) { return convexOf(body, 3).middle - toDouble(scene.domain.min); }
-
-// At p, relative to domain.min.
-Start startOf(const Scene& scene, const Body& body, Vec3d p) {
-    const Vec3d r = p - centerOf(scene, body);
-    const double amplitude = length(toDouble(body.velocity));
-    Start start{toDouble(body.velocity)};
-    if (body.field == Field::TaylorGreen) start = taylorGreen(scene, amplitude, p);
-    else if (body.field == Field::SoundWave) start = soundWave(scene, amplitude, p);
-    else if (body.field != Field::Uniform) start = linearField(scene, body, amplitude, r);
-    if (body.pressure == StartPressure::Hydrostatic) start.pressure += hydrostatic(scene, body, r);
-    return start;
-}
-
 bool relaxed(const Scene& scene) { return scene.simulation.placement == StartPlaces::Relaxed; }
 
 // Uniform in [-reach, reach] along each axis that the scene has. The same numbers from every standard library.
@@ -214,28 +161,23 @@ private:
     double reach_;   // m
 };
 
-// The solids, with a thin skin in which no fluid starts. Lattices that don't end at the surface must fill the space in front of it in the mean: a tank with a
-// wedge on its floor, H/dx = 40, has 0.5 % error of pressure with a skin of 0.1 dx, 1.7 % with 0.3 dx.
-class SolidSpace {
-public:
-    explicit SolidSpace(const Scene& scene)
-        : dimensions_(scene.simulation.dimensions), least_(0.1 * double(scene.simulation.spacing)), origin_(toDouble(scene.domain.min)) {
-        for (const Solid& solid : scene.solids) solids_.push_back(convexOf(solid, dimensions_));
-    }
-    bool takes(Vec3d p) const {
-        return std::any_of(solids_.begin(), solids_.end(), [&](const Convex& solid) {
-            Vec3d at = p + origin_ - solid.middle;
-            if (dimensions_ == 2) at.z = 0;
-            return solid.nearest(at).distance < least_;
-        });
-    }
+// Signed distance from a shape's surface at p, relative to domain.min, m: positive outside.
+double distanceFrom(const Scene& scene, const Convex& shape, Vec3d p) {
+    return shape.nearest(p + toDouble(scene.domain.min) - shape.middle).distance;
+}
 
-private:
-    std::vector<Convex> solids_;
-    int dimensions_;
-    double least_;   // m
-    Vec3d origin_;
-};
+std::vector<Convex> solidsOf(const Scene& scene) {
+    std::vector<Convex> solids;
+    for (const Solid& solid : scene.solids) solids.push_back(convexOf(solid, scene.simulation.dimensions));
+    return solids;
+}
+
+// Whether p lies in a solid or a thin skin around it, in which no fluid starts. Lattices that don't end at the surface must fill the space in
+// front of it in the mean: a tank with a wedge on its floor, H/dx = 40, has 0.5 % error of pressure with a skin of 0.1 dx, 1.7 % with 0.3 dx.
+bool isTaken(const Scene& scene, const std::vector<Convex>& solids, Vec3d p) {
+    const double skin = 0.1 * double(scene.simulation.spacing);
+    return std::any_of(solids.begin(), solids.end(), [&](const Convex& solid) { return distanceFrom(scene, solid, p) < skin; });
+}
 
 // Where a particle begins, relative to domain.min, and of which body it has the rest.
 struct Place { Vec3d at; size_t body; };
@@ -257,7 +199,7 @@ bool crowds(const Body& body, const Lattice& l, Vec3d origin, Vec3d p) {
 }
 
 // Appends the points of body `b` that are not in an earlier body or a solid.
-void placeBody(const Scene& scene, const std::vector<Lattice>& lattices, size_t b, const SolidSpace& solids, Jitter& jitter,
+void placeBody(const Scene& scene, const std::vector<Lattice>& lattices, size_t b, const std::vector<Convex>& solids, Jitter& jitter,
                std::vector<Place>& out) {
     const std::vector<Body>& bodies = scene.fluid.bodies;
     const Vec3d origin = toDouble(scene.domain.min);
@@ -266,7 +208,7 @@ void placeBody(const Scene& scene, const std::vector<Lattice>& lattices, size_t 
         for (int64_t j = 0; j < l.n[1]; ++j)
             for (int64_t i = 0; i < l.n[0]; ++i) {
                 const Vec3d p = l.at(i, j, k);
-                bool free = contains(bodies[b], l, origin, p) && !solids.takes(p);
+                bool free = contains(bodies[b], l, origin, p) && !isTaken(scene, solids, p);
                 for (size_t e = 0; e < b && free; ++e)
                     free = !crowds(bodies[e], lattices[e], origin, p);
                 if (free) out.push_back({p + jitter.next(), b});
@@ -276,7 +218,7 @@ void placeBody(const Scene& scene, const std::vector<Lattice>& lattices, size_t 
 // The body's shape with its flat sides where its lattice ends, or at a side of the domain that is nearer than half a spacing from there, and far beyond
 // that where the domain is periodic: the fluid goes on there.
 Form fitted(const Scene& scene, const Body& body, const Lattice& l) {
-    const Vec3d size = domainSize(scene), origin = toDouble(scene.domain.min);
+    const Vec3d size = scene.domain.size(), origin = toDouble(scene.domain.min);
     const double dx = scene.simulation.spacing;
     Form form = body;
     for (int k = 0; k < scene.simulation.dimensions; ++k) {
@@ -292,19 +234,11 @@ Form fitted(const Scene& scene, const Body& body, const Lattice& l) {
     return form;
 }
 
-// Signed distance from a shape's surface at p, relative to domain.min, m: positive outside.
-double distanceFrom(const Scene& scene, const Convex& shape, Vec3d p) {
-    Vec3d at = p + toDouble(scene.domain.min) - shape.middle;
-    if (flat(scene, 2)) at.z = 0;
-    return shape.nearest(at).distance;
-}
-
 // All bodies together, without the solids.
 Region regionOf(const Scene& scene, const std::vector<Lattice>& lattices) {
-    const Vec3d size = domainSize(scene), origin = toDouble(scene.domain.min);
+    const Vec3d size = scene.domain.size(), origin = toDouble(scene.domain.min);
     const int d = scene.simulation.dimensions;
-    std::vector<Convex> bodies, solids;
-    for (const Solid& solid : scene.solids) solids.push_back(convexOf(solid, d));
+    std::vector<Convex> bodies;
     Region region;
     region.dimensions = d;
     region.low = size, region.high = {0, 0, 0};
@@ -324,7 +258,7 @@ Region regionOf(const Scene& scene, const std::vector<Lattice>& lattices) {
         region.periodic[k] = scene.domain.periodic(k) && (region.low[k] < far || region.high[k] > size[k] - far);
         if (region.periodic[k]) region.low[k] = 0, region.high[k] = size[k];
     }
-    region.inside = [&scene, bodies, solids](Vec3d p, double width) {
+    region.inside = [&scene, bodies, solids = solidsOf(scene)](Vec3d p, double width) {
         auto within = [&](const Convex& shape) { return std::clamp(0.5 - distanceFrom(scene, shape, p) / width, 0.0, 1.0); };
         double share = 0;
         for (const Convex& body : bodies) share += within(body);
@@ -367,7 +301,7 @@ void placeFile(const Scene& scene, const Body& body, Placement& out) {
     const Vec3d origin = toDouble(scene.domain.min);
     for (size_t i = 0; i < table.positions.size(); ++i) {
         Vec3d place = table.positions[i] - origin, velocity = table.velocities[i];
-        if (flat(scene, 2)) place.z = 0.5 * domainSize(scene).z, velocity.z = 0;
+        if (flat(scene, 2)) place.z = 0.5 * scene.domain.size().z, velocity.z = 0;
         out.positions.push_back(toFloat(place));
         out.velocities.push_back(toFloat(velocity));
         out.pressures.push_back(table.pressures.empty() ? 0.0f : float(table.pressures[i]));
@@ -418,7 +352,7 @@ Placement placeParticles(const Scene& scene) {
     out.velocities.reserve(expected);
     out.pressures.reserve(expected);
     Jitter jitter(scene, scene.simulation.jitter);
-    const SolidSpace solids(scene);
+    const std::vector<Convex> solids = solidsOf(scene);
     std::vector<Place> places;
     for (size_t b = 0; b < lattices.size(); ++b) placeBody(scene, lattices, b, solids, jitter, places);
     if (relaxed(scene) && !places.empty()) relaxPlaces(scene, lattices, places);
@@ -465,7 +399,7 @@ double soundSpeed(const Scene& s, const FluidExtent& fluid) {
     const int gamma = s.fluid.equationOfState == EquationOfState::Linear ? 1 : s.fluid.gamma;
     if (s.fluid.stiffness > 0) return std::sqrt(double(s.fluid.stiffness) * gamma / s.fluid.restDensity);
     if (s.fluid.soundSpeed > 0) return s.fluid.soundSpeed;
-    const Vec3d g = toDouble(s.simulation.gravity), size = domainSize(s);
+    const Vec3d g = toDouble(s.simulation.gravity), size = s.domain.size();
     double fall = 0;   // m^2/s^2
     for (int k = 0; k < 3; ++k)
         fall += s.domain.periodic(k) ? std::abs(g[k]) * size[k] : g[k] > 0 ? g[k] * (size[k] - fluid.low[k]) : -g[k] * fluid.high[k];

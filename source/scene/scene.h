@@ -99,6 +99,7 @@ struct SimulationKnobs {
 struct Domain {
     Vec3 min{0, 0, 0}, max{1.6f, 0.9f, 0.6f};   // m
     bool periodicX = false, periodicY = false, periodicZ = false;   // who leaves on one side enters on the other
+    Vec3d size() const { return toDouble(max) - toDouble(min); }
     bool periodic(int axis) const { return axis == 0 ? periodicX : axis == 1 ? periodicY : periodicZ; }
 };
 

@@ -11,6 +11,7 @@
 #include "sim/passes.h"
 #include "sim/simulation.h"
 
+#include <utility>
 #include <vector>
 
 namespace spindrift::LANES {
@@ -91,7 +92,12 @@ public:
     }
     int side() const { return side_; }
     // Boundary particles have a velocity only where fluid sticks to them, a density only where its gradient is wanted.
-    void carryVelocity() { carriesVelocity_ = true, resize(slots_); }
+    // The first call says true: what they carry is to be filled in.
+    bool carryVelocity() {
+        const bool isNew = !std::exchange(carriesVelocity_, true);
+        resize(slots_);
+        return isNew;
+    }
     void move() { moves_ = true, resize(slots_); }
     void haveDensity() { hasDensity_ = true, resize(slots_); }
     // Fluid's density comes from a sum, or goes from step to step with a rate; with shifting its particles leave the fluid's paths.

@@ -203,8 +203,8 @@ template <class Kernel, Lists lists, class... Terms> struct ComputeForces<Kernel
 };
 
 // The gradient of density that hydrostatic pressure makes.
-template <class R> HD inline Vector<R> hydrostaticSlope(const View& v, Vector<R> x) {
-    return R(v.c.restDensity / (v.c.soundSpeed * v.c.soundSpeed)) * bodyForce(v.c, gravityNow(v), x);
+template <class R> HD inline Vector<R> hydrostaticSlope(const Constants& c, Vector<real> gravityNow, Vector<R> x) {
+    return R(c.restDensity / (c.soundSpeed * c.soundSpeed)) * bodyForce(c, gravityNow, x);
 }
 
 // d rho/dt = -rho div u + delta h c 2 sum_j V_j (rho_j - rho_i - rho_H) (-F), Molteni & Colagrossi 2009, without the
@@ -214,9 +214,10 @@ template <class Kernel> struct ComputeDensityRate {
     using R = Real<Group>;
     View v;
     HD void operator()(Group i) const {
+        const Vector<real> gravity = gravityNow(v);
         const Vector<R> x = load(v.fluid.position, i), u = load(v.fluid.velocity, i);
         const R rho = load(v.fluid.density, i), diffusion = v.c.diffusion;
-        const Vector<R> slope = hydrostaticSlope(v, x);
+        const Vector<R> slope = hydrostaticSlope(v.c, gravity, x);
         R sum = 0;
         forNeighbours<Lists::Pruned>(v, v.fluidNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
             const R approach = rho * dot(u - load(v.fluid.velocity, j), p.r);
@@ -261,9 +262,10 @@ template <class Kernel, bool surface> struct ComputeTransport {
         }
     };
     HD void operator()(Group i) const {
+        const Vector<real> gravity = gravityNow(v);
         const Vector<R> x = load(v.fluid.position, i), own = load(v.fluid.velocity, i);
         const R rho = load(v.fluid.density, i), perRest = 1 / v.c.restDensity;
-        const Vector<R> slope = hydrostaticSlope(v, x);
+        const Vector<R> slope = hydrostaticSlope(v.c, gravity, x);
         Sums s{};
         forNeighbours<Lists::Pruned>(v, v.fluidNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
             const R more = load(v.fluid.density, j) - rho;

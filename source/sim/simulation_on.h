@@ -57,13 +57,14 @@ public:
 
     void apply(const Scene& scene) override {
         scene_ = scene;
-        if (fluidSticks()) walls_.carryVelocity();
+        const bool sticksNow = fluidSticks() && walls_.carryVelocity();
         withKernel(scene_.simulation.kernel, [&](auto kernel) {
             using K = decltype(kernel);
             constants_ = makeConstants<K>(scene_, extent_);
             makePlan<K>();
         });
-        if (wallsMove() && !solids_.moves()) solids_.placeWalls(view());   // a face slides at another speed
+        // A face slides at another speed, or walls are to know which way they face.
+        if (sticksNow || (wallsMove() && !solids_.moves())) solids_.placeWalls(view());
         if constexpr (Device::recordsSteps)
             for (auto& recording : recordings_) recording.outdate();
     }
@@ -366,7 +367,6 @@ private:
         if (solids_.moves()) return solids_.keepMasses(walls_.view());
         solids_.placeWalls(view());
         walls_.keepOrder();
-        if (!wallsMove()) solids_.forget();
     }
 
     View view() {
@@ -466,8 +466,9 @@ template <class Device> Measurement SimulationOn<Device>::measure() {
         auto scaled = [&](const double* a) { return mass * Vec3d{a[0], a[1], a[2]}; };
         const Vector<real> at = solids[size_t(s)].middle;
         const std::string& name = scene_.solids[size_t(s)].name;
-        m.solids.push_back({name.empty() ? "solid" + std::to_string(s) : name, Vec3d{at.x, at.y, at.z} + toDouble(scene_.domain.min), scaled(load.pressure), scaled(load.other),
-                            scaled(load.torque)});
+        m.solids.push_back({name.empty() ? "solid" + std::to_string(s) : name,
+                            Vec3d{at.x, at.y, at.z} + toDouble(scene_.domain.min), scaled(load.pressure),
+                            scaled(load.other), scaled(load.torque)});
     }
     return m;
 }

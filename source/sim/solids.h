@@ -55,13 +55,34 @@ struct MoveSolids {
     }
 };
 
-// What boundary particles have from the start, in the order of their ids.
+// Convex::nearest, for lanes: signed distance of p from a solid's surface in its own axes, and the outward normal there.
+template <class R> HD inline R nearest(const SolidState& s, Vector<R> p, Vector<R>& n) {
+    R most = real(-1e30);
+    auto take = [&](R distance, Vector<R> normal) LANE_CALL {
+        const auto nearer = distance > most;
+        n = {select(nearer, normal.x, n.x), select(nearer, normal.y, n.y), select(nearer, normal.z, n.z)};
+        most = max(most, distance);
+    };
+    for (int k = 0; k < s.planes; ++k) {
+        const Vector<R> normal{s.normal[k].x, s.normal[k].y, s.normal[k].z};
+        take(dot(normal, p) - R(s.offset[k]), normal);
+    }
+    if (s.radius > 0) {
+        const Vector<R> d{R(s.across.x) * p.x, R(s.across.y) * p.y, R(s.across.z) * p.z};
+        const R far = squareRoot(max(dot(d, d), R(real(1e-30))));
+        take(far - R(s.radius), (R(1) / far) * d);
+    }
+    return most;
+}
+
+// What boundary particles have from the start, in the order of their ids. With solids only: the domain's walls are where they are.
 struct WallsAtHome {
     int firstId;
     const int* solid;       // -1: of the domain's walls
     VectorField position;   // m
-    VectorField outward;    // m
     ScalarField mass;       // 0: follows from neighbours
+    Vector<real> size;      // m, the domain's
+    HD int solidOf(int id) const { return solid ? solid[id - firstId] : -1; }
 };
 
 // Boundary particles go with their solids. Their order is that of the last sort.
@@ -71,18 +92,26 @@ struct PlaceWalls {
     WallsAtHome home;
     HD void operator()(int i) const {
         if (v.walls.id[i] < 0) return;
-        const int k = v.walls.id[i] - home.firstId, solid = home.solid[k];
-        Vector<real> x = load(home.position, k), out = load(home.outward, k), velocity = wallVelocity(v.c, x);
-        if (solid >= 0) {
-            const SolidState& s = v.solids[solid];
-            const Vector<real> arm = turned(s, x - s.home);
-            velocity = s.velocity + cross(s.spin, arm);
-            x = wrapped(s.middle + arm), out = turned(s, out);
-        }
-        store(v.walls.position, i, x);
-        if (v.walls.outward.data) store(v.walls.outward, i, out);
+        const int k = v.walls.id[i] - home.firstId, solid = home.solidOf(v.walls.id[i]);
+        if (home.mass.data)
+            if (const real mass = load(home.mass, k); mass > 0) store(v.walls.mass, i, mass);
+        solid < 0 ? placeOfDomain(i) : placeOfSolid(i, k, v.solids[solid]);
+    }
+    HD void placeOfDomain(int i) const {
+        const Vector<real> x = load(v.walls.position, i);
+        auto beyond = [](real at, real end) LANE_CALL { return at - max(min(at, end), real(0)); };
+        finish(i, {beyond(x.x, home.size.x), beyond(x.y, home.size.y), beyond(x.z, home.size.z)}, wallVelocity(v.c, x));
+    }
+    HD void placeOfSolid(int i, int k, const SolidState& s) const {
+        const Vector<real> own = load(home.position, k) - s.home, arm = turned(s, own);
+        Vector<real> normal{0, 0, 0};
+        const real distance = nearest(s, own, normal);
+        store(v.walls.position, i, wrapped(s.middle + arm));
+        finish(i, distance * turned(s, normal), s.velocity + cross(s.spin, arm));
+    }
+    HD void finish(int i, Vector<real> outward, Vector<real> velocity) const {
+        if (v.walls.outward.data) store(v.walls.outward, i, outward);
         if (v.walls.ownVelocity.data) store(v.walls.ownVelocity, i, velocity);
-        if (const real mass = load(home.mass, k); mass > 0) store(v.walls.mass, i, mass);
     }
     HD Vector<real> wrapped(Vector<real> x) const {
         const Constants& c = v.c;
@@ -122,7 +151,8 @@ struct KeepOutOfSolids {
             arm = {nearestImage(arm.x, v.c.period.x, v.c.inversePeriod.x), nearestImage(arm.y, v.c.period.y, v.c.inversePeriod.y),
                    nearestImage(arm.z, v.c.period.z, v.c.inversePeriod.z)};
         Vector<R> n{0, 0, 0};
-        const R depth = R(0) - nearest(s, {dot(arm, wide(s.axis[0])), dot(arm, wide(s.axis[1])), dot(arm, wide(s.axis[2]))}, n);
+        const Vector<R> own{dot(arm, wide(s.axis[0])), dot(arm, wide(s.axis[1])), dot(arm, wide(s.axis[2]))};
+        const R depth = R(0) - nearest(s, own, n);
         const auto inside = depth > R(0);
         n = turned(s, n);
         const Vector<R> relative = u - wide(s.velocity) - cross(wide(s.spin), arm);
@@ -132,25 +162,6 @@ struct KeepOutOfSolids {
         x = addScaled(x, select(inside, depth, zero), n);
         u = addScaled(u, select(inside, R(-1 - v.c.restitution) * into, zero), n);
         u = subtractScaled(u, friction, along);
-    }
-    // Convex::nearest, for lanes.
-    HD static R nearest(const SolidState& s, Vector<R> p, Vector<R>& n) {
-        R most = real(-1e30);
-        auto take = [&](R distance, Vector<R> normal) LANE_CALL {
-            const auto nearer = distance > most;
-            n = {select(nearer, normal.x, n.x), select(nearer, normal.y, n.y), select(nearer, normal.z, n.z)};
-            most = max(most, distance);
-        };
-        for (int k = 0; k < s.planes; ++k) {
-            const Vector<R> normal{s.normal[k].x, s.normal[k].y, s.normal[k].z};
-            take(dot(normal, p) - R(s.offset[k]), normal);
-        }
-        if (s.radius > 0) {
-            const Vector<R> d{R(s.across.x) * p.x, R(s.across.y) * p.y, R(s.across.z) * p.z};
-            const R far = squareRoot(max(dot(d, d), R(real(1e-30))));
-            take(far - R(s.radius), (R(1) / far) * d);
-        }
-        return most;
     }
 };
 
@@ -191,7 +202,7 @@ struct SumSolidLoad {
     const SolidState* solids;
     int solid;
     HD void addTo(SolidLoad& sum, int i) const {
-        if (walls.id[i] < 0 || home.solid[walls.id[i] - home.firstId] != solid) return;
+        if (walls.id[i] < 0 || home.solidOf(walls.id[i]) != solid) return;
         const Vector<real> p = load(pressure, i), o = load(other, i);
         const Vector<real> torque = cross(load(walls.position, i) - solids[solid].middle, p + o);
         sum.add({{p.x, p.y, p.z}, {o.x, o.y, o.z}, {torque.x, torque.y, torque.z}});
@@ -233,7 +244,9 @@ public:
         count_ = int(states.size()), firstId_ = firstId;
         moves_ = std::any_of(scene.solids.begin(), scene.solids.end(), [](const Solid& s) { return s.moves(); });
         fill(states_, states), fill(keys_, keys);
-        placeParticles(scene, walls, sizes);
+        const Vec3 size = scene.domain.max - scene.domain.min;
+        size_ = {real(size.x), real(size.y), real(size.z)};
+        if (count_ > 0) placeParticles(scene, walls, sizes);
     }
     int count() const { return count_; }
     bool moves() const { return moves_; }
@@ -245,8 +258,6 @@ public:
     }
     void placeWalls(const View& v) { device_.forEach(v.walls.slots, PlaceWalls{v, home()}); }
     void keepMasses(const Particles& walls) { device_.forEach(walls.slots, KeepWallMass{walls, home()}); }
-    // Of particles that stay where they are nothing is needed any more once they are placed.
-    void forget() { position_.release(), outward_.release(), mass_.release(); }
 
     template <class Pass> SolidLoad load(const View& v, int solid, bool first) {
         if (first) {
@@ -264,7 +275,7 @@ public:
 
 private:
     WallsAtHome home() {
-        return {firstId_, solidOf_.data(), {position_.data()}, {outward_.data()}, {mass_.data()}};
+        return {firstId_, solidOf_.data(), {position_.data()}, {mass_.data()}, size_};
     }
     template <class T> void fill(Buffer<T, Device>& buffer, const std::vector<T>& host) {
         buffer.resize(host.size());
@@ -283,36 +294,21 @@ private:
             std::fill_n(solidOf.begin() + long(end), sizes[s], int(s));
             end += volumes.size();
         }
-        std::vector<real> x(vectorSize(int(slots))), out(vectorSize(int(slots)));
-        for (size_t i = 0; i < walls.size(); ++i) {
-            const Vec3d outward = outwardAt(scene, walls[i], solidOf[i]);
-            for (int k = 0; k < 3; ++k) x[vectorOffset(int(i), k)] = walls[i][k], out[vectorOffset(int(i), k)] = real(outward[k]);
-        }
-        fill(solidOf_, solidOf), fill(position_, x), fill(outward_, out), fill(mass_, mass);
-    }
-    // From the nearest point of the surface to a particle behind it, m.
-    static Vec3d outwardAt(const Scene& scene, Vec3 x, int solid) {
-        const Vec3 size = scene.domain.max - scene.domain.min;
-        if (solid < 0) {
-            Vec3 out;
-            for (int k = 0; k < 3; ++k) out[k] = x[k] - std::max(std::min(x[k], size[k]), 0.0f);
-            return toDouble(out);
-        }
-        const Convex shape = convexOf(scene.solids[size_t(solid)], scene.simulation.dimensions);
-        Vec3d p = toDouble(x) + toDouble(scene.domain.min) - shape.middle;
-        if (scene.simulation.dimensions == 2) p.z = 0;
-        const Convex::Nearest nearest = shape.nearest(p);
-        return nearest.distance * nearest.normal;
+        std::vector<real> x(vectorSize(int(slots)));
+        for (size_t i = 0; i < walls.size(); ++i)
+            for (int k = 0; k < 3; ++k) x[vectorOffset(int(i), k)] = walls[i][k];
+        fill(solidOf_, solidOf), fill(position_, x), fill(mass_, mass);
     }
 
     Device& device_;
     int count_ = 0, firstId_ = 0;
     bool moves_ = false;
     double speed_ = 0;   // m/s
+    Vector<real> size_{};
     Buffer<SolidState, Device> states_{device_};
     Buffer<MotionKey, Device> keys_{device_};
     Buffer<int, Device> solidOf_{device_};
-    Buffer<real, Device> position_{device_}, outward_{device_}, mass_{device_}, pressureLoad_{device_}, otherLoad_{device_};
+    Buffer<real, Device> position_{device_}, mass_{device_}, pressureLoad_{device_}, otherLoad_{device_};
 };
 
 }  // namespace spindrift::LANES

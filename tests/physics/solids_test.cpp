@@ -1,6 +1,7 @@
 // Solids in the fluid: they are where their keyframes say, nobody gets into them, and what they feel is what the fluid feels.
 #include "scene/convex.h"
 #include "scene/json.h"
+#include "scene/particles.h"
 #include "sim/simulation.h"
 
 #include <gtest/gtest.h>
@@ -55,6 +56,23 @@ TEST(Solids, KeepEverybodyOutAtAnySpeed) {
                 for (const Particle& p : simulation->particles())
                     ASSERT_GT(shape.nearest(p.position - shape.middle).distance, -1e-5) << p.id;
             }
+}
+
+// Fluid sticks to solids and to walls, also where its viscosity is set after the start.
+TEST(Solids, ViscosityThatComesLaterIsTheSameFromThenOn) {
+    Scene scene = sceneOf({R"(solids=[{"shape":"sphere","center":[0.5,0.3,0.5],"radius":0.2}])", "walls.margin=0",
+                           R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[1,0.6,1],"velocity":[1,0,0]}])"});
+    scene.fluid.viscosity = 5;
+    auto first = makeSimulation(scene);
+    const RunState start(placeParticles(scene));
+    Scene inviscid = scene;
+    inviscid.fluid.viscosity = 0;
+    auto later = makeSimulation(inviscid, start);
+    later->apply(scene);
+    later->restart(start);
+    for (Simulation* run : {first.get(), later.get()}) run->step(20);
+    const std::vector<Particle> a = first->particles(), b = later->particles();
+    for (size_t i = 0; i < a.size(); ++i) ASSERT_LT(length(a[i].velocity - b[i].velocity), 1e-12) << i;
 }
 
 // All that happens to the fluid's momentum comes from the solid: no gravity, no other walls.

@@ -43,11 +43,10 @@ void startStir(Ui& ui) {
 }
 
 void pressButton(Ui& ui, const SDL_MouseButtonEvent& event) {
-    const SDL_Keymod held = SDL_GetModState();
     const bool left = event.button == SDL_BUTTON_LEFT;
-    if (event.button == SDL_BUTTON_MIDDLE || (left && held & KMOD_SHIFT))
+    if (event.button == SDL_BUTTON_MIDDLE || (left && ui.held & KMOD_SHIFT))
         ui.drag = Drag::Pan;
-    else if (left && held & KMOD_CTRL)
+    else if (left && ui.held & KMOD_CTRL)
         startStir(ui);
     else if (left && event.clicks == 2)
         ui.pickAt = {ui.mouseX, ui.mouseY};
@@ -76,7 +75,7 @@ void dragMouse(Ui& ui, float dx, float dy) {
 void turnWheel(Ui& ui, float notches) {
     const Scene& scene = ui.player.scene;
     const float diagonal = length(scene.domain.max - scene.domain.min);
-    if (SDL_GetModState() & KMOD_CTRL) {
+    if (ui.held & KMOD_CTRL) {
         const float wanted = ui.stirRadius * std::pow(1.15f, notches);
         ui.stirRadius = std::clamp(wanted, scene.simulation.spacing, diagonal);
         ui.stale = true;
@@ -135,7 +134,7 @@ void pressKey(Ui& ui, SDL_Keycode key) {
             ui.screenshot = true;
             break;
         case SDLK_s:
-            if (SDL_GetModState() & KMOD_CTRL) ui.saveCheckpoint();
+            if (ui.held & KMOD_CTRL) ui.saveCheckpoint();
             break;
         case SDLK_h:
         case SDLK_F1:
@@ -166,7 +165,11 @@ void handleEvent(Ui& ui, const SDL_Event& event) {
             ui.load(event.drop.file);
             SDL_free(event.drop.file);
             break;
+        case SDL_KEYUP:
+            ui.held = SDL_Keymod(event.key.keysym.mod);
+            break;
         case SDL_KEYDOWN:
+            ui.held = SDL_Keymod(event.key.keysym.mod);
             // A key that is held repeats single steps only.
             if (!io.WantTextInput && (!event.key.repeat || event.key.keysym.sym == SDLK_RIGHT))
                 pressKey(ui, event.key.keysym.sym);

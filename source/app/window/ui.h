@@ -3,6 +3,8 @@
 #include "app/frame.h"
 #include "app/window/player.h"
 
+#include <SDL.h>
+
 #include <array>
 #include <optional>
 #include <string>
@@ -41,6 +43,7 @@ struct Ui {
     bool stale = true;    // the picture no longer shows the state
     bool rewrite = true;  // the vertices no longer show the state
 
+    SDL_Keymod held = KMOD_NONE;   // modifiers when the event at hand happened, which may be some time ago
     Drag drag = Drag::None;
     float mouseX = 0, mouseY = 0;  // px within the area
     Vec3 stirCenter, stirBefore;   // m, relative to the domain's lower corner

@@ -65,6 +65,10 @@ bool Process::running() {
     return false;
 }
 
+void Process::send(int signal) const {
+    if (pid_ > 0) kill(pid_, signal);
+}
+
 int Process::wait(double seconds) {
     waitFor(seconds, [this] { return !running(); });
     return result_;
@@ -109,6 +113,12 @@ void Window::act(const std::string& words) const {
     ASSERT_EQ(std::system((display_ + " xdotool " + words).c_str()), 0) << words;
 }
 
+void Window::actWhileStopped(const std::string& words) {
+    program_.send(SIGSTOP);
+    act(words);
+    program_.send(SIGCONT);
+}
+
 void Window::drag(int button, int x0, int y0, int x1, int y1) const {
     const std::string b = std::to_string(button);
     act(at(x0, y0) + "mousedown " + b + " sleep 0.1 " + at((x0 + x1) / 2, (y0 + y1) / 2) +
@@ -141,6 +151,10 @@ std::string Window::log() const {
     std::ostringstream text;
     text << std::ifstream(folder_ / "log").rdbuf();
     return text.str();
+}
+
+bool Window::prints(const std::string& words) const {
+    return waitFor(10, [&] { return log().find(words) != std::string::npos; });
 }
 
 bool allInstalled(const std::vector<std::string>& programs) {

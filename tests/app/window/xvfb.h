@@ -25,6 +25,7 @@ public:
     }
 
     bool running();
+    void send(int signal) const;
     // What it returned, -1 when it's still running after `seconds` or a signal ended it.
     int wait(double seconds);
 
@@ -52,6 +53,8 @@ public:
 
     // "key space", at(400, 300) + "click 4": words of xdotool.
     void act(const std::string& words) const;
+    // The same for a program that is busy meanwhile and finds all of it in its queue.
+    void actWhileStopped(const std::string& words);
     // Puts the mouse at a place of the window.
     std::string at(int x, int y) const;
     void drag(int button, int x0, int y0, int x1, int y1) const;
@@ -60,6 +63,8 @@ public:
     int wait(double seconds) { return program_.wait(seconds); }
     bool running() { return program_.running(); }
     std::string log() const;
+    // Whether the log has these words, now or some seconds later.
+    bool prints(const std::string& words) const;
 
 private:
     std::string display_, id_;

@@ -1,0 +1,14 @@
+#pragma once
+// Flows with a free surface whose answers are known: cases of `spindrift validate`. `data` is the folder of the reference files.
+#include "measure/validation.h"
+
+namespace spindrift {
+
+void runDrop(const Scene&, ValidationRun&);
+// Targets count from a resolution on. With a submerged solid of that volume (m^3) also its lift.
+void runHydrostatic(const Scene&, ValidationRun&, int judgedFrom, double volume = 0);
+void runFront(const Scene&, ValidationRun&, const std::string& data);
+void runImpact(const Scene&, ValidationRun&, const std::string& data);
+void runKleefsman(const Scene&, ValidationRun&, const std::string& data);
+
+}  // namespace spindrift
