@@ -13,8 +13,9 @@ run: program
 test: build
 	ctest --test-dir $(BUILD) --output-on-failure
 
+# The first run on a machine is what later ones are compared with; rm .bench-baseline.json to begin anew.
 bench: program
-	@$(BUILD)/spindrift bench $(ARGS)
+	@$(BUILD)/spindrift bench --baseline .bench-baseline.json $(ARGS)
 
 # All flows with a known answer, about a quarter of an hour; figures and charts into build/validation. make validate ARGS="cavity_re100"
 validate: program

@@ -223,6 +223,8 @@ CLI::App* addBench(CLI::App& app, BenchOptions& options, bool& error, ErrorBench
     CLI::App* command = app.add_subcommand("bench", "times whole steps and their passes");
     command->add_option("--only", options.only, "cases whose name contains this")->type_name("TEXT");
     command->add_option("--json", options.json, "writes the figures as JSON")->type_name("FILE");
+    command->add_option("--baseline", options.baseline, "says what is slower than in this file of an earlier run, and notes cases that it has not")
+        ->type_name("FILE");
     command->add_option("--threads", options.threads, "CPU threads; all cores without it")
         ->type_name("N")->check(CLI::Range(1, 4096));
     command->add_option("--simd", options.simd, "avx512, avx2 or sse; the best without it")->type_name("NAME");

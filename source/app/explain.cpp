@@ -36,7 +36,16 @@ const char* describe(Formulation f) {
     }
     return "";
 }
-const char* describe(Kernel k) { return k == Kernel::WendlandC2 ? "Wendland C2" : "cubic spline"; }
+const char* describe(Kernel k) {
+    switch (k) {
+        case Kernel::WendlandC2: return "Wendland C2";
+        case Kernel::CubicSpline: return "cubic spline";
+        case Kernel::WendlandC4: return "Wendland C4";
+        case Kernel::WendlandC6: return "Wendland C6";
+        case Kernel::QuinticSpline: return "quintic spline";
+    }
+    return "";
+}
 
 }  // namespace
 

@@ -34,6 +34,7 @@ HD inline real min(real a, real b) { return a < b ? a : b; }
 HD inline real max(real a, real b) { return a > b ? a : b; }
 HD inline real select(bool condition, real yes, real no) { return condition ? yes : no; }
 HD inline real squareRoot(real a) { return sqrt(a); }
+HD inline real reciprocal(real a) { return 1 / a; }
 HD inline real nearestInteger(real a) { return rint(a); }
 HD inline real roundDown(real a) { return floor(a); }
 HD inline real total(real sum) { return sum; }

@@ -78,6 +78,11 @@ template <class D> HD inline Pack<D> select(typename Pack<D>::Mask m, Pack<D> ye
 HD inline bool any(Wide::Mask m) { return !hn::AllFalse(WideTag(), m.m); }
 // Exact root and division keep the divider busy beside the multipliers: cheaper than estimates with Newton steps.
 template <class D> HD inline Pack<D> squareRoot(Pack<D> a) { return Pack<D>(hn::Sqrt(a.v)); }
+// An estimate and one Newton step: 23 bits.
+template <class D> HD inline Pack<D> reciprocal(Pack<D> a) {
+    const Pack<D> x(hn::ApproximateReciprocal(a.v));
+    return mulAdd(x, negMulAdd(a, x, Pack<D>(1)), x);
+}
 template <class D> HD inline Pack<D> nearestInteger(Pack<D> a) { return Pack<D>(hn::Round(a.v)); }
 template <class D> HD inline Pack<D> roundDown(Pack<D> a) { return Pack<D>(hn::Floor(a.v)); }
 // Sum over the four neighbours of each particle i, in all of its lanes.
@@ -85,6 +90,18 @@ HD inline Wide total(Wide sum) {
     sum += Wide(hn::Shuffle2301(sum.v));
     return sum + Wide(hn::Shuffle1032(sum.v));
 }
+
+// Adds to the four neighbours at p what the particles i have for them, or takes it away.
+template <bool takes, class D> HD inline void addToOthers(float* p, D d, hn::Vec<D> v) {
+    if constexpr (hn::MaxLanes(d) > 4) {
+        const hn::Half<D> half;
+        addToOthers<takes>(p, half, hn::Add(hn::LowerHalf(half, v), hn::UpperHalf(half, v)));
+    } else {
+        const auto before = hn::LoadU(d, p);
+        hn::StoreU(takes ? hn::Sub(before, v) : hn::Add(before, v), d, p);
+    }
+}
+template <bool takes> HD inline void addToOthers(float* p, Wide a) { addToOthers<takes>(p, WideTag(), a.v); }
 
 HD inline float mulAdd(float a, float b, float c) { return a * b + c; }
 HD inline float negMulAdd(float a, float b, float c) { return c - a * b; }

@@ -51,6 +51,13 @@ public:
         for (int k = 0; k < pieces; ++k) body(k * piece, std::min(n, (k + 1) * piece));
     }
 
+    // Calls body(k) for k in [0, n), each some hundred microseconds of work.
+    template <class Body> void forTasks(int n, const Body& body) {
+        const int threads = std::min(threads_, n);
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads) if (threads > 1)
+        for (int k = 0; k < n; ++k) body(k);
+    }
+
     // Runs a pass over [0, n), a multiple of its lanes' cluster size.
     template <class Pass> void forEach(int n, const Pass& pass) {
         forRanges(n, 256, [&](int begin, int end) { runRange(pass, begin, end); });

@@ -45,7 +45,7 @@ std::vector<Candidate> candidates() {
     const std::string pool = R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[1,0.4,1],"velocity":[0,-0.1,0]}])";
     std::vector<Candidate> out;
     for (const auto& [scene, body] : {std::pair{"dam break", dam}, {"drop impact", drop}, {"still pool", pool}})
-        for (const char* formulation : {"wcsph", "delta_sph"}) out.push_back({scene, formulation, {body}});
+        for (const char* formulation : {"wcsph", "delta_sph", "delta_plus"}) out.push_back({scene, formulation, {body}});
     out.push_back({"vortices in a full box", "transport_velocity",
                    {"simulation.dimensions=2", "simulation.gravity=0,0,0", "simulation.spacing=0.03", "fluid.rest_density=1", "domain.max=0.99,0.99,1",
                     "fluid.equation_of_state=linear",

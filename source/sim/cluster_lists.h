@@ -1,5 +1,6 @@
 // Neighbour lists for SIMD lanes: for each cluster of four particles the clusters that may hold neighbours. Rows of
-// cells narrow the choice, bounding boxes decide. Built once a step, read by every neighbour pass of the step.
+// cells narrow the choice, bounding boxes decide. Built once a step, read by every neighbour pass of the step. Of a set with itself they may hold
+// each pair once, in the list of the earlier cluster, and no cluster with itself.
 #if defined(SPINDRIFT_SIM_CLUSTER_LISTS_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SPINDRIFT_SIM_CLUSTER_LISTS_H
 #undef SPINDRIFT_SIM_CLUSTER_LISTS_H
@@ -55,27 +56,31 @@ public:
         size_t numbers = 0;
         for (const auto* arenas : {&entries_, &pruned_})
             for (const std::vector<uint32_t>& arena : *arenas) numbers += arena.capacity();
-        return int64_t(lists_.capacity() * sizeof(ClusterList) + numbers * sizeof(uint32_t));
+        return int64_t(lists_.capacity() * sizeof(ClusterList) + (numbers + ends_.capacity()) * sizeof(uint32_t));
+    }
+    // One beyond the last cluster that clusters [begin, end) have in their lists or are themselves.
+    int endOf(int begin, int end) const {
+        return int(*std::max_element(ends_.begin() + begin / piece_, ends_.begin() + (end - 1) / piece_ + 1));
     }
 
     void build(Omp& device, const Grid& grid, float reach, const ClusterBoxes& own, const Particles& ownParticles,
-               const ClusterBoxes& other, const int* otherCellStart) {
+               const ClusterBoxes& other, const int* otherCellStart, bool once = false) {
         const int clusters = ownParticles.slots / clusterSize;
         lists_.resize(clusters);
-        const int piece = std::max(64, (clusters + 255) / 256);
+        const int piece = piece_ = std::max(64, (clusters + 255) / 256);
         entries_.resize((clusters + piece - 1) / piece);
         pruned_.resize(entries_.size());
+        ends_.resize(entries_.size());
         if (otherCellStart[cellCount(grid)] == 0) {
             std::fill(lists_.begin(), lists_.end(), ClusterList{});
             return;
         }
-        const Search search{grid, reach, own, other, otherCellStart,
+        const Search search{grid, reach, own, other, otherCellStart, once,
                             {periodOf(grid.wraps.x, grid.cells.x, grid.perMetre.x),
                              periodOf(grid.wraps.y, grid.cells.y, grid.perMetre.y),
                              periodOf(grid.wraps.z, grid.cells.z, grid.perMetre.z)}};
         device.forRanges(clusters, piece, [&](int begin, int end) {
-            buildPiece(begin, end, search, entries_[begin / piece],
-                       pruned_[begin / piece]);
+            ends_[begin / piece] = buildPiece(begin, end, search, entries_[begin / piece], pruned_[begin / piece]);
         });
     }
 
@@ -86,13 +91,15 @@ private:
         const ClusterBoxes& own;
         const ClusterBoxes& other;
         const int* cellStart;
+        bool once;
         float period[3];   // m, 0 where there is none
     };
     static float periodOf(int wraps, int cells, float perMetre) { return wraps ? float(cells) / perMetre : 0; }
     static size_t cellCount(const Grid& g) { return size_t(g.cells.x) * g.cells.y * g.cells.z; }
 
-    void buildPiece(int begin, int end, const Search& s, std::vector<uint32_t>& entries, std::vector<uint32_t>& pruned) {
+    uint32_t buildPiece(int begin, int end, const Search& s, std::vector<uint32_t>& entries, std::vector<uint32_t>& pruned) {
         size_t used = 0;
+        uint32_t farthest = uint32_t(end);
         for (int first = begin, last; first < end; first = last) {
             last = endOfGroup(s, first, end);
             const RowRanges ranges = findRows(s, first, last);
@@ -100,8 +107,12 @@ private:
                 entries.resize(2 * (used + (ranges.clusters + width) * clustersTogether));
             for (int c = first; c < last; ++c) {
                 const size_t before = used;
-                for (int r = 0; r < ranges.count; ++r)
-                    used += keepNear(s, c, ranges.first[r], ranges.last[r], entries.data() + used);
+                for (int r = 0; r < ranges.count; ++r) {
+                    const uint32_t from = s.once ? std::max(ranges.first[r], uint32_t(c) + 1) : ranges.first[r];
+                    if (from >= ranges.last[r]) continue;
+                    used += keepNear(s, c, from, ranges.last[r], entries.data() + used);
+                    if (used > before) farthest = std::max(farthest, entries[used - 1] + 1);
+                }
                 lists_[c].count = uint32_t(used - before);
             }
         }
@@ -111,6 +122,7 @@ private:
             lists_[c].clusters = entries.data() + next;
             lists_[c].pruned = pruned.data() + next;
         }
+        return farthest;
     }
 
     // Clusters whose rows are searched together: a few that lie in one row.
@@ -225,6 +237,8 @@ private:
         return kept;
     }
 
+    int piece_ = 1;
+    std::vector<uint32_t> ends_;   // a piece: one beyond the last cluster in its lists
     std::vector<ClusterList> lists_;
     std::vector<std::vector<uint32_t>> entries_, pruned_;   // one arena a piece, kept from step to step
 };

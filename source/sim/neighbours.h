@@ -32,7 +32,7 @@ template <class R> HD inline Pair<R> makePair(const Constants& c, Vector<R> xi, 
         r = {nearestImage(r.x, c.period.x, c.inversePeriod.x), nearestImage(r.y, c.period.y, c.inversePeriod.y),
              nearestImage(r.z, c.period.z, c.inversePeriod.z)};
     const R d2 = dot(r, r);
-    return {r, d2, squareRoot(d2 * R(c.inverseSupport2)), R(1) / (d2 + R(c.eta2))};
+    return {r, d2, squareRoot(d2 * R(c.inverseSupport2)), reciprocal(d2 + R(c.eta2))};
 }
 
 enum class Lists { All, Prune, Pruned };

@@ -87,14 +87,26 @@ template <class Kernel> struct ComputeDensity {
     View v;
     HD void operator()(Group i) const {
         const Vector<R> x = load(v.fluid.position, i);
-        R fluid = 0, walls = 0;
-        forNeighbours<Lists::Prune>(v, v.fluidNearFluid, i, x, [&](const auto& p, Four) LANE_CALL { fluid += Kernel::w(p.q); });
-        forNeighbours<Lists::Prune>(v, v.wallsNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
+        R fluid = 0;
+        forNeighbours<lists>(v, v.fluidNearFluid, i, x, [&](const auto& p, Four) LANE_CALL { fluid += Kernel::w(p.q); });
+        finish(i, x, total(fluid));
+    }
+    HD void finish(Group i, Vector<R> x, R fluid) const {
+        R walls = 0;
+        forNeighbours<lists>(v, v.wallsNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
             walls = mulAdd(load(v.walls.mass, j), Kernel::w(p.q), walls);
         });
-        const R others = total(fluid) + R((v.c.selfWeight - 1) * Kernel::w(real(0)));
+        const R others = fluid + R((v.c.selfWeight - 1) * Kernel::w(real(0)));
         storeState(v, i, R(v.c.kernelScale) * (others + total(walls)));
     }
+    // For lists with each pair once (PairSums).
+    static constexpr Lists lists = Lists::Prune;
+    static constexpr bool opposite = false;
+    struct Nothing {};
+    ScalarField field() const { return v.fluid.density; }
+    template <class I> HD Nothing state(I) const { return {}; }
+    HD R of(const Pair<R>& p, Nothing, Nothing) const { return Kernel::w(p.q); }
+    HD void finish(Group i) const { finish(i, load(v.fluid.position, i), load(field(), i)); }
 };
 
 // Where density is carried from step to step.
@@ -170,25 +182,31 @@ template <class R> struct Correction {
 
 // a_i = body force + m gradientNorm/R^5 times the sum of the scene's terms, corrected where the terms ask for it.
 template <class Kernel, Lists lists, class Terms> struct ComputeForces;
-template <class Kernel, Lists lists, class... Terms> struct ComputeForces<Kernel, lists, TermList<Terms...>> {
+template <class Kernel, Lists which, class... Terms> struct ComputeForces<Kernel, which, TermList<Terms...>> {
+    static constexpr Lists lists = which;
     using Index = Group;
     using R = Real<Group>;
     static constexpr unsigned needs = TermList<Terms...>::needs;
     View v;
     HD void operator()(Group i) const {
-        const Vector<real> gravity = gravityNow(v);
         const Vector<R> x = load(v.fluid.position, i);
-        const State<R> own = loadState<needs>(v.fluid, i);
+        const State<R> own = state(i);
         Acceleration<R> a{};
-        forNeighbours<lists>(v, v.fluidNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
-            const State<R> other = loadState<needs>(v.fluid, j);
-            (Terms::add(v.c, p, Kernel::g(p.q), own, other, a), ...);
-        });
+        forNeighbours<lists>(v, v.fluidNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL { add(p, own, state(j), a); });
+        finish(i, x, own, a, {});
+    }
+    template <class I> HD State<R> state(I i) const { return loadState<needs>(v.fluid, i); }
+    template <class A> HD void add(const Pair<R>& p, const State<R>& own, const State<R>& other, A& a) const {
+        (Terms::add(v.c, p, Kernel::g(p.q), own, other, a), ...);
+    }
+    // `a`: lane by lane, `whole`: the same for all of a particle's lanes.
+    HD void finish(Group i, Vector<R> x, const State<R>& own, Acceleration<R> a, Vector<R> whole) const {
+        const Vector<real> gravity = gravityNow(v);
         forNeighbours<lists>(v, v.wallsNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
             (Terms::addWall(v.c, p, Kernel::g(p.q), own, loadWall<needs>(v.walls, j), a), ...);
         });
         const R scale = v.c.gradientScale;
-        Vector<R> pressure = scale * total(a.pressure), other = scale * total(a.other);
+        Vector<R> pressure = scale * (whole + total(a.pressure)), other = scale * total(a.other);
         if constexpr (needs & Pressure) {
             const Correction<R> correction(v.c, total(a.moments));
             pressure = -own.inverseDensity * (correction.inverse * pressure);
@@ -196,6 +214,15 @@ template <class Kernel, Lists lists, class... Terms> struct ComputeForces<Kernel
         }
         store(v.fluid.acceleration, i, limited(pressure) + other + bodyForce(v.c, gravity, x));
     }
+    // For lists with each pair once (PairSums), where no part of the acceleration is limited.
+    static constexpr bool opposite = true;
+    VectorField field() const { return v.fluid.acceleration; }
+    HD Vector<R> of(const Pair<R>& p, const State<R>& own, const State<R>& other) const {
+        PairAcceleration<R> a{};
+        add(p, own, other, a);
+        return a.sum(p.r);
+    }
+    HD void finish(Group i) const { finish(i, load(v.fluid.position, i), state(i), {}, load(field(), i)); }
     HD Vector<R> limited(Vector<R> a) const {
         const R limit = v.c.accelerationLimit;
         return (limit / squareRoot(max(dot(a, a), limit * limit))) * a;

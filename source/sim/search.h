@@ -7,7 +7,7 @@
 #endif
 
 #ifdef SPINDRIFT_SIMD
-#include "sim/cluster_lists.h"
+#include "sim/pair_sums.h"
 namespace spindrift::LANES {
 using Boxes = ClusterBoxes;
 using NeighbourLists = ClusterLists;
@@ -20,6 +20,10 @@ struct Boxes { template <class... A> void compute(A&&...) {} };
 struct NeighbourLists {
     template <class... A> void build(A&&...) {}
     ClusterList* data() { return nullptr; }
+    int64_t bytes() const { return 0; }
+};
+struct PairSums {
+    template <class... A> void run(A&&...) {}
     int64_t bytes() const { return 0; }
 };
 }  // namespace spindrift::LANES

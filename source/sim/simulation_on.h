@@ -56,7 +56,9 @@ public:
     }
 
     void apply(const Scene& scene) override {
+        const bool before = pairsOnce();
         scene_ = scene;
+        if (pairsOnce() != before) travel_ = 1e30;   // other lists
         const bool sticksNow = fluidSticks() && walls_.carryVelocity();
         withKernel(scene_.simulation.kernel, [&](auto kernel) {
             using K = decltype(kernel);
@@ -114,7 +116,7 @@ public:
     int64_t bytes() const override {
         int64_t lists = 0;
         for (const NeighbourLists* l : {&fluidNearFluid_, &wallsNearFluid_, &fluidNearWalls_}) lists += l->bytes();
-        return device_.bytes() + lists;
+        return device_.bytes() + lists + pairSums_.bytes();
     }
 
     std::vector<PassTime> times() override {
@@ -185,7 +187,7 @@ private:
         addPass("sort", &S::sort, initial);
         addPass("neighbours", &S::findNeighbours, initial, keepsLists ? "" : noLists);
         carriesDensity(scene_) ? addPass("equation of state", &S::template onFluid<ApplyEquationOfState>, initial)
-                               : addPass("density", &S::template onFluid<ComputeDensity<K>>, initial);
+                               : addPass("density", pairPass<ComputeDensity<K>>(), initial);
         addPass("walls", wallPass<K>(), initial, whyNoWallPressure());
         addPass("forces", forcePass<K>(), initial);
     }
@@ -228,8 +230,8 @@ private:
         if (carriesDensity(scene_))
             return chooseTerms(scene_, [](auto terms) { return forces<K, Lists::Prune>(terms); }, TermList<PressureForce>{},
                                TermList<LaminarViscosity, ArtificialViscosity>{});
-        return chooseTerms(scene_, [](auto terms) { return forces<K, Lists::Pruned>(terms); }, TermList<PressureForce>{},
-                           OptionalTerms{});
+        return chooseTerms(scene_, [this](auto terms) { return pairPass<ComputeForces<K, Lists::Pruned, decltype(terms)>>(); },
+                           TermList<PressureForce>{}, OptionalTerms{});
     }
     // What fluid does to solids, by the terms that act on the fluid. (Corrected gradients have no opposite: their pressure is taken as it is
     // without.)
@@ -242,6 +244,15 @@ private:
         return shifts() ? &SimulationOn::template onFluid<ComputeTransport<K, true>>
                         : &SimulationOn::template onFluid<ComputeDensityRate<K>>;
     }
+    // Of lists that hold each pair once where they do, and of all neighbours otherwise.
+    template <class Pass> PassFunction pairPass() const {
+        if constexpr (keepsLists)
+            if (pairsOnce()) return &SimulationOn::template onPairs<Pass>;
+        return &SimulationOn::template onFluid<Pass>;
+    }
+    // Where all that pairs do they do to both: carried density changes at rates that differ, and the classic formulation limits a part of
+    // the whole.
+    bool pairsOnce() const { return keepsLists && !carriesDensity(scene_) && scene_.simulation.accelerationLimit <= 0; }
     bool shifts() const { return shiftsParticles(scene_); }
     bool fillsSpace() const { return scene_.simulation.formulation == Formulation::TransportVelocity; }
     bool fluidSticks() const { return wallsCarryPressure() && !*LaminarViscosity::skipped(scene_); }
@@ -302,6 +313,9 @@ private:
     bool wallsMove() const { return solids_.moves() || (wallCount_ > 0 && scene_.walls.movingFace != Face::None); }
     template <class Pass> SolidLoad loads(int solid) { return solids_.template load<Pass>(view(), solid, solid == 0); }
     template <class Pass> void onFluid() { device_.forEach(fluid_.slots(), Pass{view()}); }
+    template <class Pass> void onPairs() {
+        pairSums_.run(device_, fluidNearFluid_, Pass{view()});
+    }
     template <class Pass> void onWalls() { device_.forEach(walls_.slots(), Pass{view()}); }
     // Order and lists hold until two particles may have come closer by the skin.
     bool nothingMovedFar() const { return keepsLists && travel_ < skin() / 2; }
@@ -324,7 +338,7 @@ private:
         if (nothingMovedFar()) return;
         const float reach = supportRadius(scene_) + skin();
         boxes_.compute(device_, fluid_.view());
-        fluidNearFluid_.build(device_, grid_, reach, boxes_, fluid_.view(), boxes_, fluid_.cellStart());
+        fluidNearFluid_.build(device_, grid_, reach, boxes_, fluid_.view(), boxes_, fluid_.cellStart(), pairsOnce());
         wallsNearFluid_.build(device_, grid_, reach, boxes_, fluid_.view(), wallBoxes_, walls_.cellStart());
         if (wallsCarryPressure())
             fluidNearWalls_.build(device_, grid_, reach, wallBoxes_, walls_.view(), boxes_, fluid_.cellStart());
@@ -436,6 +450,7 @@ private:
     double travel_ = 1e30;      // m, bound of any particle's way since the lists were built
     Boxes boxes_, wallBoxes_;
     NeighbourLists fluidNearFluid_, wallsNearFluid_, fluidNearWalls_, wallsNearWalls_;
+    PairSums pairSums_;
 };
 
 template <class Device> Measurement SimulationOn<Device>::measure() {

@@ -43,9 +43,25 @@ template <unsigned needs, class I> HD inline Wall<Real<I>> loadWall(const Partic
     return w;
 }
 
-// The pressure part is kept apart because the classic formulation caps it. Moments sum (V_j / m) g r r: what gradients are
-// corrected by.
-template <class R> struct Acceleration { Vector<R> pressure, other; Symmetric<R> moments; };
+// What terms add to, summed over neighbours. The pressure part is kept apart because the classic formulation caps it. Moments sum
+// (V_j / m) g r r: what gradients are corrected by.
+template <class R> struct Acceleration {
+    Vector<R> pressure, other;
+    Symmetric<R> moments;
+    HD void addPressure(R s, Vector<R> r) { pressure = subtractScaled(pressure, s, r); }   // -s r
+    HD void addAlong(R s, Vector<R> r) { other = addScaled(other, s, r); }                 // s r, r = x_i - x_j
+    HD void addOther(R s, Vector<R> a) { other = addScaled(other, s, a); }                 // s a
+};
+
+// The same of one pair, where nothing is kept apart: what lies along r is multiplied by it once.
+template <class R> struct PairAcceleration {
+    R along;
+    Vector<R> other;
+    HD void addPressure(R s, Vector<R>) { along -= s; }
+    HD void addAlong(R s, Vector<R>) { along += s; }
+    HD void addOther(R s, Vector<R> a) { other = addScaled(other, s, a); }
+    HD Vector<R> sum(Vector<R> r) const { return addScaled(other, along, r); }
+};
 
 // -sum_j m (p_i/rho_i^2 + p_j/rho_j^2) grad W, Monaghan 1992. Walls take part with the pressure that
 // ExtrapolateWallPressure gave them; in the classic formulation (and Akinci 2012) they have none.
@@ -53,13 +69,13 @@ struct PressureForce {
     static constexpr unsigned needs = 0;
     static constexpr const char* name = "pressure";
     static const char* skipped(const Scene&) { return ""; }
-    template <class R>
-    HD static void add(const Constants&, const Pair<R>& p, R g, const State<R>& i, const State<R>& j, Acceleration<R>& a) {
-        a.pressure = subtractScaled(a.pressure, g * (i.pressureTerm + j.pressureTerm), p.r);
+    template <class R, class A>
+    HD static void add(const Constants&, const Pair<R>& p, R g, const State<R>& i, const State<R>& j, A& a) {
+        a.addPressure(g * (i.pressureTerm + j.pressureTerm), p.r);
     }
-    template <class R>
-    HD static void addWall(const Constants&, const Pair<R>& p, R g, const State<R>& i, const Wall<R>& b, Acceleration<R>& a) {
-        a.pressure = subtractScaled(a.pressure, b.mass * g * (i.pressureTerm + b.pressureTerm), p.r);
+    template <class R, class A>
+    HD static void addWall(const Constants&, const Pair<R>& p, R g, const State<R>& i, const Wall<R>& b, A& a) {
+        a.addPressure(b.mass * g * (i.pressureTerm + b.pressureTerm), p.r);
     }
 };
 
@@ -92,13 +108,13 @@ struct LaminarViscosity {
         if (s.simulation.formulation == Formulation::Classic) return "the classic formulation has another one";
         return s.fluid.viscosity > 0 ? "" : "fluid.viscosity is 0";
     }
-    template <class R>
-    HD static void add(const Constants& c, const Pair<R>&, R g, const State<R>& i, const State<R>& j, Acceleration<R>& a) {
-        a.other = addScaled(a.other, R(c.laminar) * g * i.inverseDensity * j.inverseDensity, i.velocity - j.velocity);
+    template <class R, class A>
+    HD static void add(const Constants& c, const Pair<R>&, R g, const State<R>& i, const State<R>& j, A& a) {
+        a.addOther(R(c.laminar) * g * i.inverseDensity * j.inverseDensity, i.velocity - j.velocity);
     }
-    template <class R>
-    HD static void addWall(const Constants& c, const Pair<R>&, R g, const State<R>& i, const Wall<R>& b, Acceleration<R>& a) {
-        a.other = addScaled(a.other, R(c.laminar) * g * i.inverseDensity * i.inverseDensity * b.mass, i.velocity - b.velocity);
+    template <class R, class A>
+    HD static void addWall(const Constants& c, const Pair<R>&, R g, const State<R>& i, const Wall<R>& b, A& a) {
+        a.addOther(R(c.laminar) * g * i.inverseDensity * i.inverseDensity * b.mass, i.velocity - b.velocity);
     }
 };
 
@@ -115,15 +131,15 @@ struct ArtificialViscosity {
     template <class R> HD static R approach(const Constants& c, const Pair<R>& p, R g, Vector<R> vij) {
         return R(c.artificial) * g * (min(dot(vij, p.r), R(0)) * p.inverseDistance2);
     }
-    template <class R>
-    HD static void add(const Constants& c, const Pair<R>& p, R g, const State<R>& i, const State<R>& j, Acceleration<R>& a) {
+    template <class R, class A>
+    HD static void add(const Constants& c, const Pair<R>& p, R g, const State<R>& i, const State<R>& j, A& a) {
         const R s = approach(c, p, g, i.velocity - j.velocity);
-        a.other = addScaled(a.other, s * (i.inverseDensity + j.inverseDensity), p.r);
+        a.addAlong(s * (i.inverseDensity + j.inverseDensity), p.r);
     }
-    template <class R>
-    HD static void addWall(const Constants& c, const Pair<R>& p, R g, const State<R>& i, const Wall<R>& b, Acceleration<R>& a) {
+    template <class R, class A>
+    HD static void addWall(const Constants& c, const Pair<R>& p, R g, const State<R>& i, const Wall<R>& b, A& a) {
         const R s = approach(c, p, g, i.velocity - b.own);
-        a.other = addScaled(a.other, b.mass * s * (i.inverseDensity + i.inverseDensity), p.r);
+        a.addAlong(b.mass * s * (i.inverseDensity + i.inverseDensity), p.r);
     }
 };
 
@@ -135,12 +151,12 @@ struct ClassicViscosity {
         if (s.simulation.formulation != Formulation::Classic) return "only the classic formulation has it";
         return s.fluid.viscosity > 0 ? "" : "fluid.viscosity is 0";
     }
-    template <class R>
-    HD static void add(const Constants& c, const Pair<R>& p, R, const State<R>& i, const State<R>& j, Acceleration<R>& a) {
-        a.other = addScaled(a.other, R(c.classicViscosity) * max(R(1) - p.q, R(0)), j.velocity - i.velocity);
+    template <class R, class A>
+    HD static void add(const Constants& c, const Pair<R>& p, R, const State<R>& i, const State<R>& j, A& a) {
+        a.addOther(R(c.classicViscosity) * max(R(1) - p.q, R(0)), j.velocity - i.velocity);
     }
-    template <class R>
-    HD static void addWall(const Constants&, const Pair<R>&, R, const State<R>&, const Wall<R>&, Acceleration<R>&) {}
+    template <class R, class A>
+    HD static void addWall(const Constants&, const Pair<R>&, R, const State<R>&, const Wall<R>&, A&) {}
 };
 
 template <class... Ts> struct TermList { static constexpr unsigned needs = (0u | ... | Ts::needs); };

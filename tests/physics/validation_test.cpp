@@ -61,6 +61,16 @@ TEST(ValidationFigures, CavityAt25) {
     EXPECT_LT(run.metrics[1].value, 1.0);
 }
 
+// Ten periods with 15 particles along the radius. Plain delta_sph has 2.5 %, -0.9 % and -26 %.
+TEST(ValidationFigures, DropAt15) {
+    const ValidationRun run = runAt(caseNamed("drop"), 15);
+    EXPECT_LT(run.metrics[0].value, 1.5);             // semi-axis, % of R
+    EXPECT_LT(std::abs(run.metrics[1].value), 0.65);  // period, %
+    EXPECT_GT(run.metrics[2].value, -19);             // energy, %
+    EXPECT_LE(run.metrics[2].value, 0);
+    EXPECT_LT(run.metrics[3].value, 0.004);           // momentum / (M s0 R)
+}
+
 // The measure is not blind: a fluid with another viscosity is another flow.
 TEST(ValidationFigures, NoticeAnotherViscosity) {
     const ValidationRun run = runAt(caseNamed("cavity_re100"), 25, [](Scene& s) { s.fluid.viscosity *= 1.2f; });

@@ -140,7 +140,7 @@ TEST(Particles, OverlappingBodiesKeepTheirDistance) {
     scene.fluid.bodies = {block, sphere, cylinder};
     const auto points = placeParticles(scene).positions;
     EXPECT_GT(points.size(), blockOnly + 500);
-    EXPECT_GE(closest(points), 0.95 * 0.02 - 1e-6);
+    EXPECT_GE(closest(points), 0.98 * 0.02 - 1e-6);
 }
 
 TEST(Particles, AbsurdScenesAreCountedWithoutOverflow) {

@@ -277,6 +277,35 @@ TEST(NeighbourLists, KeptListsMissNobody) {
     }
 }
 
+// A limit on accelerations, however high, makes every particle gather from all its neighbours; without one each pair is computed once. Nine
+// blocks of clusters, so that sums go from block to block, also over the ends of periodic axes.
+TEST(PairSums, EqualSumsOverAllNeighbours) {
+    for (const Engine& engine : Engines)
+        for (const Space& space : {Box, OtherSpaces[1], OtherSpaces[3]})
+            for (Cloud cloud : {Cloud::Random, Cloud::Clustered}) {
+                SCOPED_TRACE(testing::Message() << engine.name << " " << space.name);
+                Scene scene = emptyBox(2.6f, Kernel::WendlandC2);
+                put(scene, space);
+                if (space.dimensions == 2) scene.fluid.particleMass = 0.3f;
+                const Placement placement = makeCloud(scene, cloud, 9000);
+                std::vector<std::vector<Particle>> ways;
+                for (float limit : {0.0f, 1e17f}) {
+                    scene.simulation.accelerationLimit = limit;
+                    if (const auto simulation = tryMake(scene, placement, engine)) ways.push_back(simulation->particles());
+                }
+                if (ways.empty()) continue;
+                double largest = 0, density = 0, acceleration = 0;
+                for (const Particle& p : ways[1]) largest = std::max(largest, length(p.acceleration));
+                for (size_t i = 0; i < ways[0].size(); ++i) {
+                    density = std::max(density, std::abs(ways[0][i].density / ways[1][i].density - 1));
+                    acceleration = std::max(acceleration, length(ways[0][i].acceleration - ways[1][i].acceleration) / largest);
+                }
+                EXPECT_GT(largest, 1);
+                EXPECT_LT(density, engine.tolerance);
+                EXPECT_LT(acceleration, 20 * engine.tolerance);
+            }
+}
+
 // Pair forces are equal and opposite: without gravity and walls total momentum stays as it is.
 TEST(Conservation, MomentumToRoundOff) {
     Scene scene = emptyBox(2.6f, Kernel::WendlandC2);

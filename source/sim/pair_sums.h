@@ -1,0 +1,91 @@
+// Sums over pairs that a list holds once: what a pair gives to one particle it gives, or its opposite, to the other (Newton's third law).
+// Blocks of clusters are summed by one thread each, into memory of their own that reaches from the block's first cluster to the last one
+// that its lists know; then each particle adds up what the blocks have for it, in their order. Blocks follow from the number of particles:
+// the sums don't depend on the number of threads.
+#if defined(SPINDRIFT_SIM_PAIR_SUMS_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SPINDRIFT_SIM_PAIR_SUMS_H
+#undef SPINDRIFT_SIM_PAIR_SUMS_H
+#else
+#define SPINDRIFT_SIM_PAIR_SUMS_H
+#endif
+
+#include "sim/cluster_lists.h"
+#include "sim/neighbours.h"
+
+namespace spindrift::LANES {
+
+// Numbers that a sum has a particle, and those that are stored.
+HD inline Wide component(Wide a, int) { return a; }
+HD inline Wide component(Vector<Wide> a, int k) { return k == 0 ? a.x : k == 1 ? a.y : a.z; }
+template <class Field> inline constexpr int components = 1;
+template <class Field> inline constexpr int stride = 1;
+template <> inline constexpr int components<VectorField> = 3;
+template <> inline constexpr int stride<VectorField> = vectorStride;
+
+class PairSums {
+public:
+    int64_t bytes() const {
+        size_t numbers = 0;
+        for (const std::vector<float>& block : blocks_) numbers += block.capacity();
+        return int64_t(numbers * sizeof(float));
+    }
+
+    // Adds up pass.of(pair, pass.state(i), pass.state(j)), what a pair gives to i, and Pass::opposite says whether j gets that or its opposite;
+    // pass.finish(i) goes on from the sum, which is then in pass.field().
+    template <class Pass> void run(Omp& device, const ClusterLists& lists, const Pass& pass) {
+        const int clusters = pass.v.fluid.slots / clusterSize;
+        constexpr int numbers = clusterSize * stride<decltype(pass.field())>;   // a cluster
+        const int block = std::max(256, (clusters + mostBlocks - 1) / mostBlocks), count = (clusters + block - 1) / block;
+        blocks_.resize(size_t(count));
+        device.forTasks(count, [&](int b) {
+            const int begin = b * block, end = std::min(clusters, begin + block);
+            std::vector<float>& sums = blocks_[size_t(b)];
+            sums.assign(size_t(lists.endOf(begin, end) - begin) * numbers + clusterSize, 0);   // readable one cluster past its end
+            const Pass local = pass;   // else each store to the sums might have changed a constant, for all the compiler knows
+            for (int i = begin * clusterSize; i < end * clusterSize; i += Group::size)
+                sumOnce(local, Group{i}, sums.data(), begin);
+        });
+        device.forTasks(count, [&](int b) {
+            const int begin = b * block, end = std::min(clusters, begin + block);
+            float* out = pass.field().data + size_t(begin) * numbers;
+            const size_t own = size_t(end - begin) * numbers;
+            std::copy_n(blocks_[size_t(b)].data(), own, out);
+            for (int a = 0; a < b; ++a) {
+                const size_t skipped = size_t(begin - a * block) * numbers, known = blocks_[size_t(a)].size() - clusterSize;
+                if (known <= skipped) continue;
+                const float* more = blocks_[size_t(a)].data() + skipped;
+                for (size_t k = 0, n = std::min(known - skipped, own); k < n; ++k) out[k] += more[k];
+            }
+            for (int i = begin * clusterSize; i < end * clusterSize; i += Group::size) pass.finish(Group{i});
+        });
+    }
+
+private:
+    static constexpr int mostBlocks = 32;
+
+    template <class Pass> HD static void sumOnce(const Pass& pass, Group i, float* sums, int firstCluster) {
+        const View& v = pass.v;
+        using Field = decltype(pass.field());
+        constexpr int n = components<Field>, numbers = clusterSize * stride<Field>;
+        const Vector<Wide> x = load(v.fluid.position, i);
+        const auto own = pass.state(i);
+        const Four same{i.first / clusterSize * clusterSize};
+        auto sum = pass.of(makePair(v.c, x, load(v.fluid.position, same)), own, pass.state(same));   // each gives itself to all four
+        forNeighbours<Pass::lists>(v, v.fluidNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
+            const auto given = pass.of(p, own, pass.state(j));
+            sum = sum + given;
+            float* other = sums + size_t(j.first / clusterSize - firstCluster) * numbers;
+            for (int k = 0; k < n; ++k) addToOthers<Pass::opposite>(other + k * clusterSize, component(given, k));
+        });
+        const auto whole = total(sum);
+        float* at = sums + size_t(i.first / clusterSize - firstCluster) * numbers + i.first % clusterSize;
+        for (int k = 0; k < n; ++k, at += clusterSize)
+            storeAt(at, Group{0}, loadAt(at, Group{0}) + component(whole, k));
+    }
+
+    std::vector<std::vector<float>> blocks_;
+};
+
+}  // namespace spindrift::LANES
+
+#endif
