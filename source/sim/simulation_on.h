@@ -228,16 +228,18 @@ private:
             return *LaminarViscosity::skipped(scene_) ? forces<K, Lists::Prune>(TermList<CorrectedPressureForce>{})
                                                       : forces<K, Lists::Prune>(TermList<CorrectedPressureForce, LaminarViscosity>{});
         if (carriesDensity(scene_))
-            return chooseTerms(scene_, [](auto terms) { return forces<K, Lists::Prune>(terms); }, TermList<PressureForce>{},
-                               TermList<LaminarViscosity, ArtificialViscosity>{});
+            return chooseTerms(scene_, [](auto terms) { return forces<K, Lists::Prune>(terms); }, TermList<PressureForce>{}, Viscosities{});
+        if (scene_.simulation.formulation == Formulation::Classic)
+            return chooseTerms(scene_, [](auto terms) { return forces<K, Lists::Pruned>(terms); }, TermList<PressureForce>{},
+                               TermList<ClassicViscosity>{});
         return chooseTerms(scene_, [this](auto terms) { return pairPass<ComputeForces<K, Lists::Pruned, decltype(terms)>>(); },
-                           TermList<PressureForce>{}, OptionalTerms{});
+                           TermList<PressureForce>{}, Viscosities{});
     }
     // What fluid does to solids, by the terms that act on the fluid. (Corrected gradients have no opposite: their pressure is taken as it is
     // without.)
     template <class K> auto loadPass() const {
         return chooseTerms(scene_, [](auto terms) { return &SimulationOn::template loads<ComputeWallLoads<K, decltype(terms)>>; },
-                           TermList<PressureForce>{}, TermList<LaminarViscosity, ArtificialViscosity>{});
+                           TermList<PressureForce>{}, Viscosities{});
     }
     template <class K> PassFunction ratePass() const {
         if (fillsSpace()) return &SimulationOn::template onFluid<ComputeTransport<K, false>>;
@@ -250,9 +252,12 @@ private:
             if (pairsOnce()) return &SimulationOn::template onPairs<Pass>;
         return &SimulationOn::template onFluid<Pass>;
     }
-    // Where all that pairs do they do to both: carried density changes at rates that differ, and the classic formulation limits a part of
-    // the whole.
-    bool pairsOnce() const { return keepsLists && !carriesDensity(scene_) && scene_.simulation.accelerationLimit <= 0; }
+    // Where all that pairs do they do to both: carried density changes at rates that differ, and a limit, which the classic formulation
+    // has, is one on a part of the whole.
+    bool pairsOnce() const {
+        return keepsLists && !carriesDensity(scene_) && scene_.simulation.formulation != Formulation::Classic &&
+               scene_.simulation.accelerationLimit <= 0;
+    }
     bool shifts() const { return shiftsParticles(scene_); }
     bool fillsSpace() const { return scene_.simulation.formulation == Formulation::TransportVelocity; }
     bool fluidSticks() const { return wallsCarryPressure() && !*LaminarViscosity::skipped(scene_); }

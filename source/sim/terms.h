@@ -160,6 +160,7 @@ struct ClassicViscosity {
 };
 
 template <class... Ts> struct TermList { static constexpr unsigned needs = (0u | ... | Ts::needs); };
+using Viscosities = TermList<LaminarViscosity, ArtificialViscosity>;   // of all formulations but the classic one
 using OptionalTerms = TermList<LaminarViscosity, ArtificialViscosity, ClassicViscosity>;
 
 // Calls done(TermList<...>) with just the terms this scene wants: a run-time scene becomes a compile-time list.
