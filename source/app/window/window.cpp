@@ -149,7 +149,13 @@ private:
             ImGui_ImplSDL2_ProcessEvent(&event);
             handleEvent(ui_, event);
         }
-        settle_ = came || uiTime() < ui_.message.until ? settleFrames : settle_ - 1;
+        settle_ = messageChanged() || came ? settleFrames : settle_ - 1;
+    }
+
+    // A message has come, or its time is over; in between nothing needs to be drawn.
+    bool messageChanged() {
+        const double until = uiTime() < ui_.message.until ? ui_.message.until : 0;
+        return std::exchange(messageUntil_, until) != until;
     }
 
     // Size, full screen and panel may have changed: the picture takes what the panel leaves.
@@ -291,7 +297,7 @@ private:
     bool moved_ = false,
          drawn_ = false;  // since the last update of the vertices; since the last present()
     std::array<int, 2> windowed_{};  // size before full screen
-    double pictureEnd_ = 0;
+    double pictureEnd_ = 0, messageUntil_ = 0;   // of the message on the screen
     double frameBegin_ = 0, nextTimes_ = 0, stirTime_ = 0;
 };
 

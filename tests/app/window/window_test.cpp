@@ -154,6 +154,16 @@ TEST_F(WindowTest, CtrlSSavesACheckpoint) {
     EXPECT_EQ(window.log().find("spindrift-002.h5"), std::string::npos) << "S alone does nothing";
 }
 
+TEST_F(WindowTest, PausedAndLeftAloneItRests) {
+    Window window = paused();
+    settled(window);
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+    const double before = window.cpuTime();
+    std::this_thread::sleep_for(std::chrono::seconds(3));
+    EXPECT_GT(before, 0.05) << "nothing is measured";
+    EXPECT_LT(window.cpuTime() - before, 0.03 * 3);
+}
+
 TEST_F(WindowTest, FullScreenAndBack) {
     Window window = paused();
     const Image before = settled(window);

@@ -69,6 +69,16 @@ void Process::send(int signal) const {
     if (pid_ > 0) kill(pid_, signal);
 }
 
+double Process::cpuTime() const {
+    std::ifstream stat("/proc/" + std::to_string(pid_) + "/stat");
+    std::string word;
+    std::getline(stat, word, ')');   // the name may have blanks
+    for (int field = 3; field < 14; ++field) stat >> word;
+    double user = 0, system = 0;
+    stat >> user >> system;
+    return (user + system) / double(sysconf(_SC_CLK_TCK));
+}
+
 int Process::wait(double seconds) {
     waitFor(seconds, [this] { return !running(); });
     return result_;

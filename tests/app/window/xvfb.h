@@ -26,6 +26,8 @@ public:
 
     bool running();
     void send(int signal) const;
+    // What it has used of the cores so far, all its threads together; s.
+    double cpuTime() const;
     // What it returned, -1 when it's still running after `seconds` or a signal ended it.
     int wait(double seconds);
 
@@ -62,6 +64,7 @@ public:
     Image screenshot();
     int wait(double seconds) { return program_.wait(seconds); }
     bool running() { return program_.running(); }
+    double cpuTime() const { return program_.cpuTime(); }
     std::string log() const;
     // Whether the log has these words, now or some seconds later.
     bool prints(const std::string& words) const;
