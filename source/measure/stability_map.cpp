@@ -144,7 +144,7 @@ std::string svg(const StabilityMap& map) {
     double x = 20;
     for (int v = 0; v < 3; ++v, x += v == 0 ? 70 : 230)
         out += fmt::format("<circle cx='{}' cy='42' r='4' fill='{}'/><text x='{}' y='46'>{}</text>\n", x, VerdictColors[v], x + 10, names[v]);
-    out += fmt::format("<path d='M{} 34v16' stroke='black' stroke-width='2'/><text x='{}' y='46'>usual value; logarithmic</text>\n", x - 90, x - 80);
+    out += fmt::format("<path d='M{} 34v16' stroke='black' stroke-width='2'/><text x='{}' y='46'>usual value</text>\n", x - 90, x - 80);
     for (size_t k = 0; k < map.rows.size(); ++k) out += drawn(map.rows[k], Top + RowHeight * (double(k) + 0.5));
     return out + "</svg>\n";
 }
