@@ -1,6 +1,7 @@
 #include "app/explain.h"
 
 #include "core/error.h"
+#include "scene/schema.h"
 #include "sim/simulation.h"
 
 #include <fmt/format.h>
@@ -26,26 +27,7 @@ std::map<std::string, double> timePasses(Simulation& simulation, int steps) {
     return each;
 }
 
-const char* describe(Formulation f) {
-    switch (f) {
-        case Formulation::Wcsph: return "weakly compressible";
-        case Formulation::DeltaSph: return "delta-SPH";
-        case Formulation::DeltaPlus: return "delta+-SPH";
-        case Formulation::TransportVelocity: return "transport velocity";
-        case Formulation::Classic: return "classic";
-    }
-    return "";
-}
-const char* describe(Kernel k) {
-    switch (k) {
-        case Kernel::WendlandC2: return "Wendland C2";
-        case Kernel::CubicSpline: return "cubic spline";
-        case Kernel::WendlandC4: return "Wendland C4";
-        case Kernel::WendlandC6: return "Wendland C6";
-        case Kernel::QuinticSpline: return "quintic spline";
-    }
-    return "";
-}
+template <class Enum> const char* nameOf(Enum value) { return enumNames(value)[size_t(value)]; }
 
 }  // namespace
 
@@ -57,7 +39,7 @@ int explain(const Scene& scene) {
     fmt::print("device       {}\n", simulation->deviceName());
     fmt::print("particles    {} fluid, {} boundary\n", simulation->fluidCount(), simulation->wallCount());
     fmt::print("formulation  {}, {}, R = {:g} dx = {:.3g} m, about {:.0f} neighbours\n",
-               describe(scene.simulation.formulation), describe(scene.simulation.kernel), support,
+               nameOf(scene.simulation.formulation), nameOf(scene.simulation.kernel), support,
                supportRadius(scene), scene.simulation.dimensions == 2 ? 3.14159 * support * support : 4.18879 * support * support * support);
     fmt::print("memory       {:.1f} MiB, {:.0f} bytes a particle\n\n", double(simulation->bytes()) / mebibyte,
                double(simulation->bytes()) / double(particles));

@@ -9,6 +9,7 @@
 
 #include "device/buffer.h"
 #include "sim/constants.h"
+#include "sim/integrate.h"
 #include "sim/output_passes.h"
 #include "sim/particle_set.h"
 #include "sim/passes.h"

@@ -145,7 +145,7 @@ struct View {
     StepState* state;
 };
 
-// m/s^2, at the run's time, which is on the device: a recorded step needs no new constants while it grows. Passes ask first of all: a branch among
+// m/s^2, at the run's time, which is on the device: a recorded step needs no new constants while it grows. Passes ask outside of their loops: a branch among
 // their sums would keep the compiler from fusing multiplications with additions, and change bits.
 HD inline Vector<real> gravityNow(const View& v) {
     if (v.c.gravityRate <= 0) return v.c.gravity;
