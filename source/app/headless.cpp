@@ -79,6 +79,9 @@ struct Pictures {
     }
 };
 
+// A knob's decimal number, which its float is but near to: a run of 0.1 s and a frame at 0.1 s end together.
+double asWritten(float value) { return std::stod(fmt::format("{}", value)); }
+
 class HeadlessRun {
 public:
     HeadlessRun(const Start& start, bool quiet)
@@ -100,8 +103,8 @@ public:
     int run() {
         try {
             now_ = simulation_->measure();
-            first_ = now_.steps;
-            if (checkpointsByTime()) nextCheckpoint_ = after(now_.time, scene_.output.checkpointEvery);
+            first_ = now_.steps, evaluationsBefore_ = now_.evaluations;
+            if (checkpointsByTime()) nextCheckpoint_ = after(now_.time, asWritten(scene_.output.checkpointEvery));
             sample();
             while (!done() && trouble_.empty() && stopSignal == 0) advance();
         } catch (...) {   // a GPU was lost, a disk is full: what was measured until then is kept
@@ -123,12 +126,13 @@ public:
 private:
     bool done() const {
         const int steps = scene_.compute.steps;
-        const double time = scene_.output.time;
-        return (steps > 0 && steps_ >= steps) || (time > 0 && now_.time >= time);
+        const double time = asWritten(scene_.output.time);
+        return (steps > 0 && steps_ >= steps) || (time > 0 && reached(time));
     }
 
     // One step; then what is due: a look at the run's health, a sample, the progress bar.
     void advance() {
+        simulation_->stopAt(nextStop());
         const auto start = std::chrono::steady_clock::now();
         simulation_->step();
         ++steps_, ++made_;
@@ -142,7 +146,7 @@ private:
         now_ = simulation_->measure();
         lookAfterIt();
         if (sampling_ && trouble_.empty()) sample();
-        if (checkpointsByTime() && trouble_.empty() && now_.time >= nextCheckpoint_) saveCheckpoint();
+        if (checkpointsByTime() && trouble_.empty() && reached(nextCheckpoint_)) saveCheckpoint();
         if (progress_.due()) progress_.show(share(), describe());
     }
 
@@ -162,7 +166,7 @@ private:
         lastRow_ = std::min(lastRow_, steps_);
         nextRow_ = std::min(nextRow_, after(now_.time, rowInterval()));
         nextFrame_ = std::min(nextFrame_, after(now_.time, frameInterval()));
-        if (checkpointsByTime()) nextCheckpoint_ = after(now_.time, scene_.output.checkpointEvery);
+        if (checkpointsByTime()) nextCheckpoint_ = after(now_.time, asWritten(scene_.output.checkpointEvery));
     }
 
     double share() const {
@@ -179,11 +183,11 @@ private:
     // A row of the series and a frame of the sequence, if they are due.
     void sample() {
         const Output& output = scene_.output;
-        if (rows_ && now_.time >= nextRow_) {
+        if (rows_ && reached(nextRow_)) {
             addRow();
             nextRow_ = after(now_.time, rowInterval());
         }
-        if (!output.frames.empty() && now_.time >= nextFrame_) {
+        if (!output.frames.empty() && reached(nextFrame_)) {
             const auto file = std::filesystem::path(output.frames) / fmt::format("frame_{:05}.png", frameTimes_.size());
             pictures_->save(*simulation_, scene_, file.string());
             frameTimes_.push_back(now_.time);
@@ -191,8 +195,18 @@ private:
         }
     }
 
+    // The next time at which the run is looked at or ends.
+    double nextStop() const {
+        const Output& output = scene_.output;
+        double stop = output.time > 0 ? asWritten(output.time) : 1e300;
+        if (rows_) stop = std::min(stop, nextRow_);
+        if (!output.frames.empty()) stop = std::min(stop, nextFrame_);
+        return checkpointsByTime() ? std::min(stop, nextCheckpoint_) : stop;
+    }
+    // Two times that should be the same, but are sums of different steps, are.
+    bool reached(double time) const { return now_.time >= time * (1 - 1e-9); }
     double frameInterval() const { return 1 / double(scene_.output.fps); }
-    double rowInterval() const { return scene_.output.sampleEvery > 0 ? double(scene_.output.sampleEvery) : frameInterval(); }
+    double rowInterval() const { return scene_.output.sampleEvery > 0 ? asWritten(scene_.output.sampleEvery) : frameInterval(); }
     // Of the multiples of `every` the first one that is still ahead.
     static double after(double time, double every) { return (std::floor(time / every * (1 + 1e-9)) + 1) * every; }
 
@@ -204,7 +218,7 @@ private:
         written_ = state.clock.time;
         simulation_->restart(state);
         guard_->keep(std::move(state));
-        nextCheckpoint_ = after(now_.time, scene_.output.checkpointEvery);
+        nextCheckpoint_ = after(now_.time, asWritten(scene_.output.checkpointEvery));
     }
 
     void addRow() {
@@ -247,6 +261,9 @@ private:
         fmt::print(out, "particles      {} fluid, {} boundary\n", simulation_->fluidCount(),
                    simulation_->wallCount());
         fmt::print(out, "steps          {}, {:.3g} ms each\n", steps_, ms);
+        if (scene_.time.mode == TimeMode::Local && made_ > 0)
+            fmt::print(out, "local steps    {:.3g} evaluations of a particle a step\n",
+                       (now_.evaluations - evaluationsBefore_) / double(simulation_->fluidCount()) / double(made_));
         fmt::print(out, "simulated      {:.4g} s, last step {:.3g} s\n", now_.time, now_.dt);
         fmt::print(out, "energy         {:.4g} J kinetic, {:.4g} J potential\n", now_.kineticEnergy,
                    now_.potentialEnergy);
@@ -277,6 +294,7 @@ private:
     int64_t made_ = 0;                              // with those that were made in vain
     std::vector<double> frameTimes_;                // s, of the frames written
     double nextRow_ = 0, nextFrame_ = 0, nextCheckpoint_ = 0, written_ = -1;  // s simulated; the last: of the checkpoint
+    double evaluationsBefore_ = 0;                  // this run
     double stepSeconds_ = 0;                      // of wall time
     StopSignals signals_;
 };

@@ -73,6 +73,8 @@ void checkDomain(const Scene& scene) {
                "use simulation.formulation wcsph");
     if (scene.simulation.formulation == Formulation::Classic && scene.time.integrator != Integrator::SymplecticEuler)
         refuse("time.integrator", "the classic formulation is stepped by symplectic_euler; use that, or simulation.formulation wcsph");
+    if (scene.time.mode == TimeMode::Local && (shiftsParticles(scene) || scene.time.integrator != Integrator::SymplecticEuler))
+        refuse("time.mode", "local steps need time.integrator symplectic_euler and a formulation that doesn't shift particles; use cfl, or those");
     const bool periodic = scene.domain.periodicX || scene.domain.periodicY || scene.domain.periodicZ;
     if (scene.simulation.formulation == Formulation::Classic && (dimensions == 2 || periodic))
         refuse("simulation.formulation", "the classic one has three dimensions and walls all round; use wcsph");

@@ -16,7 +16,7 @@ enum class Formulation { Wcsph, DeltaSph, DeltaPlus, TransportVelocity, Classic 
 enum class Kernel { WendlandC2, CubicSpline, WendlandC4, WendlandC6, QuinticSpline };
 enum class EquationOfState { Tait, Linear };
 enum class WallKind { Reflect, Particles };
-enum class TimeMode { Fixed, Cfl };
+enum class TimeMode { Fixed, Cfl, Local };
 enum class Integrator { SymplecticEuler, VelocityVerlet, PredictorCorrector };
 enum class Shape { Block, Sphere, Cylinder, Wedge, File };
 enum class Axis { X, Y, Z };
@@ -133,6 +133,7 @@ struct TimeKnobs {
     float step = 0.0005f;                       // s, used by fixed
     float cfl = 0.4f;                           // Courant number: dt <= cfl h / (c + |v|), h = R/2
     float maxStep = 0.01f;                      // s
+    float restSpeed = 0.0001f;                  // of local steps: share of the speed of sound below which fluid may rest
     int retries = 3;                            // with half the step from an earlier state, before a run in trouble is given up
 };
 

@@ -30,7 +30,7 @@ constexpr auto enumNames(Kernel) {
 }
 constexpr auto enumNames(EquationOfState) { return std::array{"tait", "linear"}; }
 constexpr auto enumNames(WallKind) { return std::array{"reflect", "particles"}; }
-constexpr auto enumNames(TimeMode) { return std::array{"fixed", "cfl"}; }
+constexpr auto enumNames(TimeMode) { return std::array{"fixed", "cfl", "local"}; }
 constexpr auto enumNames(Integrator) {
     return std::array{"symplectic_euler", "velocity_verlet", "predictor_corrector"};
 }
@@ -252,7 +252,7 @@ void visitPhysics(S& s, Visitor&& visit) {
     visit("walls.velocity", s.walls.velocity,
           Knob{"m/s", -1e3f, 1e3f, "of the moving face, along itself"});
 
-    visit("time.mode", s.time.mode, Knob{"", 0, 0, "fixed step or the largest stable one"});
+    visit("time.mode", s.time.mode, Knob{"", 0, 0, "fixed step, the largest that is good for all, or local: each particle's own, and rest for who is calm"});
     visit("time.integrator", s.time.integrator,
           Knob{"", 0, 0,
                "symplectic_euler: first order; velocity_verlet: second order for the same work, of carried density "
@@ -260,7 +260,9 @@ void visitPhysics(S& s, Visitor&& visit) {
                Restart});
     visit("time.step", s.time.step, Knob{"s", 1e-8f, 1, "time step when fixed"});
     visit("time.cfl", s.time.cfl, Knob{"", 0.01f, 1, "Courant number: share of the stable step"});
-    visit("time.max_step", s.time.maxStep, Knob{"s", 1e-8f, 1, "longest step the cfl mode takes"});
+    visit("time.max_step", s.time.maxStep, Knob{"s", 1e-8f, 1, "longest step that cfl and local take"});
+    visit("time.rest_speed", s.time.restSpeed,
+          Knob{"", 0, 0.1f, "local: slower than this share of the speed of sound, fluid may fall asleep; 0 = never"});
     visit("time.retries", s.time.retries,
           Knob{"", 0, 8, "how often a run in trouble goes back to its last good state and on with half the step"});
 }

@@ -125,7 +125,7 @@ template <class Kernel> Constants makeConstants(const Scene& s, const FluidExten
     auto inverse = [](float length) { return length > 0 ? real(1 / double(length)) : real(0); };
     c.inversePeriod = {inverse(period.x), inverse(period.y), inverse(period.z)};
     c.restitution = s.walls.restitution, c.friction = s.walls.friction;
-    c.cfl = s.time.cfl, c.maxStep = s.time.maxStep;
+    c.cfl = s.time.cfl, c.maxStep = s.time.maxStep, c.restSpeed = s.time.restSpeed;
     c.fixedStep = s.time.mode == TimeMode::Fixed ? real(s.time.step) : real(0);
     c.viscousStep = s.fluid.viscosity > 0 ? real(0.125 * h * h * rho0 / s.fluid.viscosity) : c.maxStep;
     return c;

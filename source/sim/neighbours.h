@@ -41,14 +41,16 @@ enum class Lists { All, Prune, Pruned };
 // A group narrower than a cluster sees but a part of the hits, so that it can't prune.
 inline constexpr bool prunes = Group::size == clusterSize;
 
+// With `due` only those that are.
 template <Lists lists, class F>
-HD inline void forNeighbours(const View& v, const Neighbourhood& near, Group i, Vector<Wide> xi, const F& f) {
+HD inline void forNeighbours(const View& v, const Neighbourhood& near, Group i, Vector<Wide> xi, const F& f, const uint8_t* due = nullptr) {
     ClusterList& list = near.lists[i.first / clusterSize];
     const bool pruned = prunes && lists == Lists::Pruned;
     const uint32_t* clusters = pruned ? list.pruned : list.clusters;
     const uint32_t count = pruned ? list.prunedCount : list.count;
     uint32_t kept = 0;
     for (uint32_t k = 0; k < count; ++k) {
+        if (due && due[clusters[k]] != Due) continue;
         const Four j{int(clusters[k]) * clusterSize};
         const Pair<Wide> pair = makePair(v.c, xi, load(near.position, j));
         f(pair, j);

@@ -40,28 +40,46 @@ public:
         device.forTasks(count, [&](int b) {
             const int begin = b * block, end = std::min(clusters, begin + block);
             std::vector<float>& sums = blocks_[size_t(b)];
+            sums.clear();
+            bool any = false;
+            for (int c = begin; c < end && !any; ++c) any = isNear(pass.v.fluid, c);
+            if (!any) return;
             sums.assign(size_t(lists.endOf(begin, end) - begin) * numbers + clusterSize, 0);   // readable one cluster past its end
             const Pass local = pass;   // else each store to the sums might have changed a constant, for all the compiler knows
             for (int i = begin * clusterSize; i < end * clusterSize; i += Group::size)
-                sumOnce(local, Group{i}, sums.data(), begin);
+                if (isNear(local.v.fluid, i / clusterSize)) sumOnce(local, Group{i}, sums.data(), begin);
         });
         device.forTasks(count, [&](int b) {
             const int begin = b * block, end = std::min(clusters, begin + block);
-            float* out = pass.field().data + size_t(begin) * numbers;
-            const size_t own = size_t(end - begin) * numbers;
-            std::copy_n(blocks_[size_t(b)].data(), own, out);
-            for (int a = 0; a < b; ++a) {
-                const size_t skipped = size_t(begin - a * block) * numbers, known = blocks_[size_t(a)].size() - clusterSize;
-                if (known <= skipped) continue;
-                const float* more = blocks_[size_t(a)].data() + skipped;
-                for (size_t k = 0, n = std::min(known - skipped, own); k < n; ++k) out[k] += more[k];
+            auto isDueOne = [&](int c) { return isDue(pass.v.fluid, c * clusterSize); };
+            for (int first = begin, last; first < end; first = last) {   // stretches of clusters that are due, or aren't
+                last = first + 1;
+                while (last < end && isDueOne(last) == isDueOne(first)) ++last;
+                if (isDueOne(first)) addUp<numbers>(b, block, first, last, pass.field().data);
             }
-            for (int i = begin * clusterSize; i < end * clusterSize; i += Group::size) pass.finish(Group{i});
+            for (int i = begin * clusterSize; i < end * clusterSize; i += Group::size)
+                if (isDue(pass.v.fluid, Group{i})) pass.finish(Group{i});
         });
     }
 
 private:
     static constexpr int mostBlocks = 32;
+
+    // Clusters that are due or may have a neighbour that is.
+    static bool isNear(const Particles& p, int cluster) { return !p.due || p.due[cluster] != NotDue; }
+
+    // What blocks [0, b] have for clusters [first, last) of block b.
+    template <int numbers> void addUp(int b, int block, int first, int last, float* field) const {
+        const size_t count = size_t(last - first) * numbers;
+        float* out = field + size_t(first) * numbers;
+        std::copy_n(blocks_[size_t(b)].data() + size_t(first - b * block) * numbers, count, out);
+        for (int a = 0; a < b; ++a) {
+            const std::vector<float>& sums = blocks_[size_t(a)];
+            const size_t skipped = size_t(first - a * block) * numbers;
+            if (sums.size() <= skipped + clusterSize) continue;
+            for (size_t k = 0, n = std::min(sums.size() - clusterSize - skipped, count); k < n; ++k) out[k] += sums[skipped + k];
+        }
+    }
 
     template <class Pass> HD static void sumOnce(const Pass& pass, Group i, float* sums, int firstCluster) {
         const View& v = pass.v;
@@ -76,7 +94,7 @@ private:
             sum = sum + given;
             float* other = sums + size_t(j.first / clusterSize - firstCluster) * numbers;
             for (int k = 0; k < n; ++k) addToOthers<Pass::opposite>(other + k * clusterSize, component(given, k));
-        });
+        }, isDue(v.fluid, i) ? nullptr : v.fluid.due);
         const auto whole = total(sum);
         float* at = sums + size_t(i.first / clusterSize - firstCluster) * numbers + i.first % clusterSize;
         for (int k = 0; k < n; ++k, at += clusterSize)

@@ -29,7 +29,7 @@ public:
         return {slots_, id_.data(), {position_.data()}, {velocity_.data()}, {acceleration_.data()},
                 {density_.data()}, {inverseDensity_.data()}, {pressureTerm_.data()}, {mass_.data()}, {outward_.data()}, {ownVelocity_.data()},
                 {densityRate_.data()}, {shiftVelocity_.data()}, {shiftAcceleration_.data()},
-                {kept_.position.data()}, {kept_.velocity.data()}, {kept_.density.data()}};
+                {kept_.position.data()}, {kept_.velocity.data()}, {kept_.density.data()}, {level_.data()}, {calmDensity_.data()}, due_.data()};
     }
 
     // Takes over particles with ids firstId, firstId + 1, ...; boundary particles have no velocities. Densities only where they
@@ -64,7 +64,9 @@ public:
         sortedId_.resize(slots);
         sortedPosition_.resize(vectorSize(slots));
         if (kind_ == Kind::Fluid) sortedVelocity_.resize(vectorSize(slots));
-        if (carriesDensity_) sortedDensity_.resize(slots);
+        if (sortsDensity()) sortedDensity_.resize(slots);
+        if (hasLevels()) sortedLevel_.resize(slots), sortedCalmDensity_.resize(slots), sortedAcceleration_.resize(vectorSize(slots));
+        if (hasLevels() && carriesDensity_) sortedDensityRate_.resize(slots);
         resizeKept(sortedKept_, slots);
         Particles sorted = view();
         sorted.id = sortedId_.data();
@@ -74,6 +76,10 @@ public:
         sorted.keptPosition = {sortedKept_.position.data()};
         sorted.keptVelocity = {sortedKept_.velocity.data()};
         sorted.keptDensity = {sortedKept_.density.data()};
+        sorted.level = {sortedLevel_.data()};
+        sorted.calmDensity = {sortedCalmDensity_.data()};
+        sorted.acceleration = {sortedAcceleration_.data()};
+        sorted.densityRate = {sortedDensityRate_.data()};
         device_.forEach(slots, Reorder{order_.data(), view(), sorted});
         flip();
         resize(slots);
@@ -84,7 +90,8 @@ public:
         id_.swap(sortedId_);
         position_.swap(sortedPosition_);
         if (kind_ == Kind::Fluid) velocity_.swap(sortedVelocity_);
-        if (carriesDensity_) density_.swap(sortedDensity_);
+        if (sortsDensity()) density_.swap(sortedDensity_);
+        if (hasLevels()) level_.swap(sortedLevel_), calmDensity_.swap(sortedCalmDensity_), acceleration_.swap(sortedAcceleration_), densityRate_.swap(sortedDensityRate_);
         kept_.position.swap(sortedKept_.position);
         kept_.velocity.swap(sortedKept_.velocity);
         kept_.density.swap(sortedKept_.density);
@@ -106,6 +113,8 @@ public:
     // What integrators need besides: a velocity, or all of a state.
     void keepVelocity() { keepsVelocity_ = true; }
     void keepState() { keepsVelocity_ = keepsState_ = true; }
+    // Particles have steps of their own, or walls are but looked at where fluid is due.
+    void stepLocally(bool locally) { stepsLocally_ = locally, resize(slots_); }
     // Particles that never move are sorted once.
     void keepOrder() {
         sortedId_.release(), key_.release(), order_.release();
@@ -161,6 +170,7 @@ private:
         pressureTerm_.resize(slots);
         if (carriesVelocity_) velocity_.resize(vectorSize(slots));
         if (hasDensity_) density_.resize(slots);
+        stepsLocally_ ? due_.resize(size_t(slots / clusterSize)) : due_.release();
         if (kind_ == Kind::Walls) {
             mass_.resize(slots);
             if (carriesVelocity_) outward_.resize(vectorSize(slots));
@@ -172,8 +182,12 @@ private:
         if (carriesDensity_) densityRate_.resize(slots);
         if (shifts_)
             for (auto* field : {&shiftVelocity_, &shiftAcceleration_}) field->resize(vectorSize(slots));
+        stepsLocally_ ? level_.resize(slots) : level_.release();
+        stepsLocally_ ? calmDensity_.resize(slots) : calmDensity_.release();
         resizeKept(kept_, slots);
     }
+    bool hasLevels() const { return stepsLocally_ && kind_ == Kind::Fluid; }
+    bool sortsDensity() const { return carriesDensity_ || hasLevels(); }
     struct Kept {
         explicit Kept(Device& d) : position(d), velocity(d), density(d) {}
         Buffer<real, Device> position, velocity, density;
@@ -217,13 +231,15 @@ private:
     Device& device_;
     Kind kind_;
     bool carriesVelocity_ = kind_ == Kind::Fluid, hasDensity_ = kind_ == Kind::Fluid, carriesDensity_ = false, shifts_ = false,
-         moves_ = false, keepsVelocity_ = false, keepsState_ = false;
+         moves_ = false, keepsVelocity_ = false, keepsState_ = false, stepsLocally_ = false;
     int slots_ = 0, side_ = 0;
     Buffer<int, Device> id_{device_}, sortedId_{device_}, key_{device_}, order_{device_}, cellStart_{device_};
     Buffer<real, Device> position_{device_}, velocity_{device_}, acceleration_{device_};
     Buffer<real, Device> sortedPosition_{device_}, sortedVelocity_{device_}, sortedDensity_{device_};
     Buffer<real, Device> densityRate_{device_}, shiftVelocity_{device_}, shiftAcceleration_{device_};
     Kept kept_{device_}, sortedKept_{device_};
+    Buffer<uint8_t, Device> due_{device_};
+    Buffer<real, Device> level_{device_}, sortedLevel_{device_}, calmDensity_{device_}, sortedCalmDensity_{device_}, sortedAcceleration_{device_}, sortedDensityRate_{device_};
     Buffer<real, Device> density_{device_}, inverseDensity_{device_}, pressureTerm_{device_}, mass_{device_}, outward_{device_},
         ownVelocity_{device_};
 };

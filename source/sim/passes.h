@@ -42,6 +42,10 @@ struct Reorder {
         // Empty slots: so far out that no distance to anybody is small or equal.
         const real far = 2 * farAway * real(1 + i % 4);
         store(to.position, i, s < 0 ? Vector<real>{far, far, far} : load(from.position, s));
+        if (to.level.data) store(to.level, i, s < 0 ? resting : load(from.level, s));
+        if (to.level.data) store(to.calmDensity, i, s < 0 ? real(0) : load(from.calmDensity, s));
+        if (to.level.data) store(to.acceleration, i, s < 0 ? Vector<real>{0, 0, 0} : load(from.acceleration, s));
+        if (to.level.data && to.densityRate.data) store(to.densityRate, i, s < 0 ? real(0) : load(from.densityRate, s));
         if (to.velocity.data) store(to.velocity, i, s < 0 ? Vector<real>{0, 0, 0} : load(from.velocity, s));
         if (to.density.data) store(to.density, i, s < 0 ? real(0) : load(from.density, s));
         if (to.keptPosition.data) store(to.keptPosition, i, s < 0 ? Vector<real>{far, far, far} : load(from.keptPosition, s));
@@ -86,6 +90,7 @@ template <class Kernel> struct ComputeDensity {
     using R = Real<Group>;
     View v;
     HD void operator()(Group i) const {
+        if (!isDue(v.fluid, i)) return;
         const Vector<R> x = load(v.fluid.position, i);
         R fluid = 0;
         forNeighbours<lists>(v, v.fluidNearFluid, i, x, [&](const auto& p, Four) LANE_CALL { fluid += Kernel::w(p.q); });
@@ -125,6 +130,7 @@ template <class Kernel, bool sticks, bool dense> struct ExtrapolateToWalls {
     using R = Real<Group>;
     View v;
     HD void operator()(Group b) const {
+        if (!isDue(v.walls, b)) return;
         const Vector<real> gravity = gravityNow(v);
         const Vector<R> x = load(v.walls.position, b);
         const Vector<R> force = bodyForce(v.c, gravity, x);
@@ -189,6 +195,7 @@ template <class Kernel, Lists which, class... Terms> struct ComputeForces<Kernel
     static constexpr unsigned needs = TermList<Terms...>::needs;
     View v;
     HD void operator()(Group i) const {
+        if (!isDue(v.fluid, i)) return;
         const Vector<R> x = load(v.fluid.position, i);
         const State<R> own = state(i);
         Acceleration<R> a{};
@@ -241,6 +248,7 @@ template <class Kernel> struct ComputeDensityRate {
     using R = Real<Group>;
     View v;
     HD void operator()(Group i) const {
+        if (!isDue(v.fluid, i)) return;
         const Vector<real> gravity = gravityNow(v);
         const Vector<R> x = load(v.fluid.position, i), u = load(v.fluid.velocity, i);
         const R rho = load(v.fluid.density, i), diffusion = v.c.diffusion;
@@ -380,6 +388,20 @@ template <bool volume> struct FindExtremes {
     }
 };
 
+// Courant's limit, s.
+HD inline real acousticStep(const Constants& c, real speed) { return c.cfl * (c.support / 2) / (c.soundSpeed + max(speed, c.solidSpeed)); }
+// A step is shorter where whole ones would miss the time at which the run stops.
+HD inline double untilStop(const StepState& s, double dt) {
+    const double left = s.stop - s.time;
+    return left > 0 && left < 1e9 * dt ? left / ceil(left / dt * (1 - 1e-9)) : dt;
+}
+
+// A time to stop at is reached exactly, whatever sums of steps are rounded to.
+HD inline void advanceTime(StepState& s, double dt) {
+    s.time += dt;
+    if (s.stop - s.time < 1e-6 * dt && s.time - s.stop < 1e-6 * dt) s.time = s.stop;
+}
+
 // dt from the sound speed, the largest velocity and acceleration, and the viscosity (Monaghan 1992, Morris 1997).
 struct ChooseTimeStep {
     using Index = int;
@@ -387,18 +409,17 @@ struct ChooseTimeStep {
     const Extremes* extremes;
     HD void operator()(int) const {
         const Constants& c = v.c;
-        real dt = c.fixedStep;
+        double dt = c.fixedStep;
         const real speed = squareRoot(real(extremes->speed2));
         if (dt <= 0) {
-            const real h = c.support / 2;
             const real pull = squareRoot(real(extremes->acceleration2));
-            dt = min(c.cfl * h / (c.soundSpeed + max(speed, c.solidSpeed)), min(c.maxStep, c.viscousStep));
-            dt = min(dt, real(0.25) * squareRoot(h / max(pull, real(1e-12))));
+            const real fastest = min(acousticStep(c, speed), min(c.maxStep, c.viscousStep));
+            dt = untilStop(*v.state, min(fastest, real(0.25) * squareRoot(c.support / 2 / max(pull, real(1e-12)))));
         }
         v.state->dt = dt;
         v.state->speed = speed;
         v.state->volume = extremes->count > 0 ? extremes->volume / extremes->count : 1;
-        v.state->time += dt;
+        advanceTime(*v.state, dt);
         ++v.state->steps;
     }
 };

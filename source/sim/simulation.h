@@ -33,6 +33,7 @@ struct Measurement {
     double time = 0;                 // s
     double dt = 0;                   // s, the last step
     int64_t steps = 0;
+    double evaluations = 0;          // of a particle's forces, all together
     double kineticEnergy = 0;        // sum m v^2 / 2
     double potentialEnergy = 0;      // -sum m g.x, zero at the domain's lower corner
     Vec3d momentum;                  // sum m v
@@ -61,6 +62,8 @@ public:
     // Takes over live knobs (schema.h says which); restart knobs must be unchanged.
     virtual void apply(const Scene&) = 0;
     virtual void stir(const Stir&) = 0;
+    // Steps from now on end at this time (s) exactly instead of reaching beyond it, if they aren't of fixed length.
+    virtual void stopAt(double time) = 0;
 
     // Fluid particles have ids [0, fluidCount), boundary particles [fluidCount, fluidCount + wallCount).
     virtual int fluidCount() const = 0;

@@ -10,6 +10,7 @@
 #include "device/buffer.h"
 #include "sim/constants.h"
 #include "sim/integrate.h"
+#include "sim/local_steps.h"
 #include "sim/output_passes.h"
 #include "sim/particle_set.h"
 #include "sim/passes.h"
@@ -48,7 +49,10 @@ public:
     void restart(const RunState& state) override {
         CHECK(int(state.particles.positions.size()) == fluidCount_);
         fluid_.upload(state.particles.positions, state.particles.velocities, densitiesOf(state), 0);
-        device_.upload(clock_.data(), &state.clock, 1);
+        StepState clock = state.clock;
+        clock.speed = 0, clock.allDue = false;   // a checkpoint doesn't know it
+        device_.upload(clock_.data(), &clock, 1);
+        wake();
         if (solids_.moves()) walls_.upload(wallsAtHome_, {}, {}, fluidCount_);
         travel_ = 1e30;
         // Density and acceleration of the first picture.
@@ -57,24 +61,14 @@ public:
     }
 
     void apply(const Scene& scene) override {
-        const bool before = pairsOnce();
-        scene_ = scene;
-        if (pairsOnce() != before) travel_ = 1e30;   // other lists
-        const bool sticksNow = fluidSticks() && walls_.carryVelocity();
-        withKernel(scene_.simulation.kernel, [&](auto kernel) {
-            using K = decltype(kernel);
-            constants_ = makeConstants<K>(scene_, extent_);
-            makePlan<K>();
-        });
-        // A face slides at another speed, or walls are to know which way they face.
-        if (sticksNow || (wallsMove() && !solids_.moves())) solids_.placeWalls(view());
-        if constexpr (Device::recordsSteps)
-            for (auto& recording : recordings_) recording.outdate();
+        refresh(scene);
+        wake();
     }
     void stir(const Stir& s) override {
         stir_ = s;
-        apply(scene_);
+        refresh(scene_);
     }
+    void stopAt(double time) override { device_.upload(&clock_.data()->stop, &time, 1); }
 
     void step(int count) override {
         for (int k = 0; k < count; ++k) stepOnce();
@@ -105,7 +99,7 @@ public:
     RunState state() override {
         RunState s;
         s.particles = {fluid_.positions(fluidCount_, 0), fluid_.velocities(fluidCount_, 0), wallsAtHome_, {}, solidSizes_};
-        device_.download(&s.clock, clock_.data(), 1);
+        s.clock = clock();
         s.start = extent_;
         s.densities = fluid_.densities(fluidCount_);
         return s;
@@ -143,109 +137,39 @@ private:
         PassTime* time = nullptr;
     };
 
-    // The passes that this scene needs, in order. What it doesn't need isn't in the list.
-    template <class K> void makePlan() {
-        using S = SimulationOn;
-        plan_.clear();
-        rows_.clear();
-        switch (scene_.time.integrator) {
-            // v += a dt, x += v dt.
-            case Integrator::SymplecticEuler:
-                evaluateForces<K>(Initial::Yes);
-                chooseStep();
-                advance<K, Kick, Drift>({"integrate", "kick", "drift"});
-                break;
-            // Verlet 1967 with velocities: forces at the end of the step with the velocity foreseen there, of which then half is
-            // taken back for half of the new acceleration.
-            case Integrator::VelocityVerlet:
-                chooseStep();
-                advance<K, HalfKick, Drift | KeepVelocity | KickOn>({"integrate", "kick", "drift"});
-                evaluateForces<K>(Initial::Yes);
-                addPass("second kick", &S::template onFluid<Integrate<Resume | HalfKick>>);
-                break;
-            // Half a step ahead; from there the forces and then, with the mean velocity, the rates of the whole step (Monaghan 1989;
-            // the mean of old and new velocity keeps oscillations from growing, as in a leapfrog).
-            case Integrator::PredictorCorrector:
-                evaluateForces<K>(Initial::Yes);
-                chooseStep();
-                advance<K, 0, Keep | HalfDrift | KickOn>({"predict", "", "predict"});
-                evaluateForces<K>(Initial::No);
-                addPass("extremes", &S::countCorrection, Initial::No, keepsLists ? "" : noLists);
-                advance<K, Resume | HalfKick, Resume | Drift | KickOn>({"correct", "second kick", "correct"});
-                break;
-        }
-        noteTerms(OptionalTerms{});
-        addPass("solid collisions", &S::template onFluid<KeepOutOfSolids>, Initial::No, solids_.count() > 0 ? "" : "there are no solids");
-        measureLoads_ = loadPass<K>();
-        sortsInStep_ = int(std::count_if(plan_.begin(), plan_.end(), [](const Row& row) { return row.run == &S::sort; }));
-        for (Row& row : plan_) row.time = timeOf(row.name);
+    void refresh(const Scene& scene) {
+        const bool before = pairsOnce();
+        scene_ = scene;
+        if (pairsOnce() != before) travel_ = 1e30;   // other lists
+        const bool sticksNow = fluidSticks() && walls_.carryVelocity();
+        withKernel(scene_.simulation.kernel, [&](auto kernel) {
+            using K = decltype(kernel);
+            constants_ = makeConstants<K>(scene_, extent_);
+            makePlan<K>();
+        });
+        fluid_.stepLocally(hasLocalSteps());
+        walls_.stepLocally(hasLocalSteps());
+        if (hasLocalSteps() && !localSteps_.used()) localSteps_.resize(grid_, real(2 * supportRadius(scene_) * (1 + scene_.compute.skin)));
+        // A face slides at another speed, or walls are to know which way they face.
+        if (sticksNow || (wallsMove() && !solids_.moves())) solids_.placeWalls(view());
+        if constexpr (Device::recordsSteps)
+            for (auto& recording : recordings_) recording.outdate();
     }
-    // Acceleration of where the particles are.
-    template <class K> void evaluateForces(Initial initial) {
-        using S = SimulationOn;
-        addPass("solids", initial == Initial::Yes ? &S::moveSolids : &S::moveSolidsHalfWay, initial,
-                solids_.moves() ? "" : solids_.count() > 0 ? "no solid moves" : "there are no solids");
-        addPass("sort", &S::sort, initial);
-        addPass("neighbours", &S::findNeighbours, initial, keepsLists ? "" : noLists);
-        carriesDensity(scene_) ? addPass("equation of state", &S::template onFluid<ApplyEquationOfState>, initial)
-                               : addPass("density", pairPass<ComputeDensity<K>>(), initial);
-        addPass("walls", wallPass<K>(), initial, whyNoWallPressure());
-        addPass("forces", forcePass<K>(), initial);
-    }
-    void chooseStep() {
-        using S = SimulationOn;
-        addPass("extremes", fillsSpace() ? &S::findExtremes<true> : &S::findExtremes<false>, Initial::No,
-                keepsLists || shifts() || constants_.fixedStep <= 0 ? "" : "the time step is fixed (time.mode)");
-        addPass("time step", &S::chooseTimeStep);
-        addPass("stir", &S::template onFluid<StirFluid>, Initial::No, stir_.radius > 0 ? "" : "nobody stirs");
-    }
+    // plan.h: the passes that this scene needs, in order. What it doesn't need isn't in the list.
+    template <class K> void makePlan();
+    template <class K> void evaluateForces(Initial);
+    void chooseStep();
     struct Names { const char *both, *kick, *drift; };
-    // In one pass; where density is carried in two, between which its rate comes.
-    template <class K, unsigned kick, unsigned drift> void advance(Names names) {
-        using S = SimulationOn;
-        if (!carriesDensity(scene_)) return addPass(names.both, &S::template onFluid<Integrate<kick | drift>>);
-        if constexpr (kick != 0) addPass(names.kick, &S::template onFluid<Integrate<kick>>);
-        addPass(shifts() ? "transport" : "density rate", ratePass<K>());
-        addPass(names.drift, fillsSpace() ? &S::template onFluid<Integrate<drift | DriftDensity | DriftShifted | KeepVolume>>
-                             : shifts()   ? &S::template onFluid<Integrate<drift | DriftDensity | DriftShifted>>
-                                          : &S::template onFluid<Integrate<drift | DriftDensity>>);
-    }
+    template <class K, unsigned kick, unsigned drift> void advance(Names);
+    template <class K> void stepLocally();
+    template <class K> PassFunction wallPass() const;
+    template <class K> PassFunction forcePass() const;
+    template <class K> auto loadPass() const;
+    template <class K> PassFunction ratePass() const;
     void addPass(const char* name, PassFunction run, Initial initial = Initial::No, const char* skipped = "") {
         const bool said = std::any_of(rows_.begin(), rows_.end(), [&](const PlanRow& r) { return r.name == name && !r.skipped.empty(); });
         if (!said) rows_.push_back({name, skipped});
         if (!*skipped) plan_.push_back({name, run, initial});
-    }
-    template <class K> PassFunction wallPass() const {
-        using S = SimulationOn;
-        if (shifts())
-            return fluidSticks() ? &S::template onWalls<ExtrapolateToWalls<K, true, true>>
-                                 : &S::template onWalls<ExtrapolateToWalls<K, false, true>>;
-        return fluidSticks() ? &S::template onWalls<ExtrapolateToWalls<K, true, false>>
-                             : &S::template onWalls<ExtrapolateToWalls<K, false, false>>;
-    }
-    // The first pass over the fluid's neighbours in a step prunes the lists.
-    template <class K> PassFunction forcePass() const {
-        if (fillsSpace())
-            return *LaminarViscosity::skipped(scene_) ? forces<K, Lists::Prune>(TermList<CorrectedPressureForce>{})
-                                                      : forces<K, Lists::Prune>(TermList<CorrectedPressureForce, LaminarViscosity>{});
-        if (carriesDensity(scene_))
-            return chooseTerms(scene_, [](auto terms) { return forces<K, Lists::Prune>(terms); }, TermList<PressureForce>{}, Viscosities{});
-        if (scene_.simulation.formulation == Formulation::Classic)
-            return chooseTerms(scene_, [](auto terms) { return forces<K, Lists::Pruned>(terms); }, TermList<PressureForce>{},
-                               TermList<ClassicViscosity>{});
-        return chooseTerms(scene_, [this](auto terms) { return pairPass<ComputeForces<K, Lists::Pruned, decltype(terms)>>(); },
-                           TermList<PressureForce>{}, Viscosities{});
-    }
-    // What fluid does to solids, by the terms that act on the fluid. (Corrected gradients have no opposite: their pressure is taken as it is
-    // without.)
-    template <class K> auto loadPass() const {
-        return chooseTerms(scene_, [](auto terms) { return &SimulationOn::template loads<ComputeWallLoads<K, decltype(terms)>>; },
-                           TermList<PressureForce>{}, Viscosities{});
-    }
-    template <class K> PassFunction ratePass() const {
-        if (fillsSpace()) return &SimulationOn::template onFluid<ComputeTransport<K, false>>;
-        return shifts() ? &SimulationOn::template onFluid<ComputeTransport<K, true>>
-                        : &SimulationOn::template onFluid<ComputeDensityRate<K>>;
     }
     // Of lists that hold each pair once where they do, and of all neighbours otherwise.
     template <class Pass> PassFunction pairPass() const {
@@ -259,6 +183,7 @@ private:
         return keepsLists && !carriesDensity(scene_) && scene_.simulation.formulation != Formulation::Classic &&
                scene_.simulation.accelerationLimit <= 0;
     }
+    bool hasLocalSteps() const { return scene_.time.mode == TimeMode::Local; }
     bool shifts() const { return shiftsParticles(scene_); }
     bool fillsSpace() const { return scene_.simulation.formulation == Formulation::TransportVelocity; }
     bool fluidSticks() const { return wallsCarryPressure() && !*LaminarViscosity::skipped(scene_); }
@@ -270,12 +195,22 @@ private:
         return wallsCarryPressure() ? "" : "walls have no pressure in the classic formulation";
     }
 
-    void stepOnce() {
+    void runPlan() {
         const bool measured = std::exchange(measureNext_, false);
         if constexpr (Device::recordsSteps) {
             if (!measured) return stepFromRecording();
         }
         for (Row& row : plan_) device_.timed(row.time, [&] { (this->*row.run)(); });
+    }
+    // With local steps the plan leads to the next moment at which anybody is due.
+    void stepOnce() {
+        do runPlan();
+        while (hasLocalSteps() && clock().moment != 0);
+    }
+    StepState clock() {
+        StepState clock;
+        device_.download(&clock, clock_.data(), 1);
+        return clock;
     }
     // One recording for each side of the particles' buffers; walls are sorted only when they move.
     void stepFromRecording() {
@@ -335,6 +270,7 @@ private:
     void sort() {
         if (nothingMovedFar()) return;
         fluid_.sort(grid_);
+        if (hasLocalSteps()) onFluid<ApplyEquationOfState>();   // of those who aren't due
         if (!solids_.moves()) return;
         walls_.sort(grid_);
         solids_.placeWalls(view());   // all but their places, which the sort took along
@@ -357,6 +293,31 @@ private:
         device_.forEach(1, ChooseTimeStep{view(), extremes_.data()});
         const double share = scene_.time.integrator == Integrator::PredictorCorrector ? 0.5 : 1;
         if constexpr (keepsLists) travel_ += share * clock_.data()->dt * largestSpeed(clock_.data()->dt);
+    }
+    void beginStep() { device_.forEach(1, BeginStep{view()}); }
+    void findWhoRests() {
+        device_.forEach(int(localSteps_.blocks()), MeasureBlocks{view()});
+        device_.forEach(int(localSteps_.blocks()), RestBlocks{view()});
+    }
+    void findWhoIsDue() {
+        if (allDue()) return;
+        device_.forEach(fluid_.slots() / clusterSize, FindDueClusters{view()});
+        device_.forEach(int(localSteps_.blocks()), FindDueBlocks{view()});
+        device_.forEach(walls_.slots() / clusterSize, ForgetDue{walls_.view()});
+        device_.forEach(int(localSteps_.blocks()), SpreadDue{view()});
+    }
+    void chooseMoment() {
+        device_.reduce(fluid_.slots(), FindMotion{fluid_.view(), clock_.data()}, localSteps_.motion());
+        device_.forEach(1, ChooseMoment{view(), localSteps_.motion(), fluidCount_});
+        if constexpr (keepsLists)
+            travel_ += clock_.data()->dt * std::max({clock_.data()->speed, double(length(stir_.velocity)), double(solids_.largestSpeed())});
+    }
+    // Flags are needless then. (A recording can't look.)
+    bool allDue() { return !Device::recordsSteps && clock().allDue; }
+    void wake() {
+        if (!hasLocalSteps()) return;
+        localSteps_.wake();
+        device_.forEach(fluid_.slots(), WakeParticles{fluid_.view()});
     }
     // From the middle of the step to its end, where the middle's accelerations lead: dt/2 v + dt^2/2 a, and a shift that may
     // turn round.
@@ -395,7 +356,8 @@ private:
                {wallsNearFluid_.data(), walls_.cellStart(), walls_.view().position},
                {fluidNearWalls_.data(), fluid_.cellStart(), fluid_.view().position},
                {wallsNearWalls_.data(), walls_.cellStart(), walls_.view().position},
-               grid_, constants_, clock_.data()};
+               grid_, constants_, clock_.data(), localSteps_.view()};
+        if (allDue()) v.fluid.due = v.walls.due = nullptr;
         v.c.stirCenter = toVector(stir_.center - scene_.domain.min);
         v.c.stirVelocity = toVector(stir_.velocity);
         v.c.stirRadius = stir_.radius;
@@ -447,11 +409,13 @@ private:
     SolidLoad (SimulationOn::*measureLoads_)(int) = nullptr;
     Buffer<StepState, Device> clock_{device_};
     Buffer<Extremes, Device> extremes_{device_};
+    LocalSteps<Device> localSteps_{device_};
     Buffer<Vertex, Device> staging_{device_};   // for vertices that the host is to have
     bool measureNext_ = true;
     typename Device::Recording recordings_[4];
     int sortsInStep_ = 1;       // each exchanges the particles' two sides of buffers
     static constexpr bool keepsLists = clusterSize > 1;
+    static constexpr const char* allAlike = "all take the same steps (time.mode)";
     static constexpr const char* noLists = "rows of cells are walked instead of lists";
     double travel_ = 1e30;      // m, bound of any particle's way since the lists were built
     Boxes boxes_, wallBoxes_;
@@ -461,12 +425,12 @@ private:
 
 template <class Device> Measurement SimulationOn<Device>::measure() {
     const Totals t = device_.template sum<Totals>(fluid_.slots(), SumUp{fluid_.view(), scene_.fluid.restDensity});
-    StepState state;
-    device_.download(&state, clock_.data(), 1);
+    const StepState state = clock();
     const double n = fluidCount_, mass = particleMass(scene_), rho0 = scene_.fluid.restDensity;
     const Vec3d center = (1 / n) * Vec3d{t.position[0], t.position[1], t.position[2]};
     Measurement m;
-    m.time = state.time, m.dt = state.dt, m.steps = state.steps;
+    m.time = state.time, m.dt = hasLocalSteps() ? state.longest : state.dt, m.steps = state.steps;
+    m.evaluations = hasLocalSteps() ? state.evaluations : n * double(state.steps);
     m.kineticEnergy = mass * t.speed2 / 2;
     m.potentialEnergy = mass * n * dot(-1.0 * toDouble(scene_.simulation.gravity), center) + 0.0;   // no minus zero
     const Vec3d middle = 0.5 * toDouble(scene_.domain.max - scene_.domain.min);
@@ -495,5 +459,7 @@ template <class Device> Measurement SimulationOn<Device>::measure() {
 }
 
 }  // namespace spindrift::LANES
+
+#include "sim/plan.h"
 
 #endif

@@ -35,7 +35,17 @@ struct Particles {
     VectorField keptPosition;      // m, what the integrator keeps while forces are evaluated elsewhere
     VectorField keptVelocity;      // m/s
     ScalarField keptDensity;       // kg/m^3
+    ScalarField level;             // local steps only: how short a particle's own step is, longest / 2^level, or how it rests
+    ScalarField calmDensity;       // kg/m^3, local steps only: mean since its surroundings are calm
+    uint8_t* due;                  // local steps only: per cluster, whether it is evaluated now
 };
+
+// The level of who rests.
+inline constexpr real resting = -1;
+// Of clusters. Near: not due itself, but maybe a neighbour of who is.
+enum : uint8_t { NotDue, NearDue, Due };
+
+template <class I> HD inline bool isDue(const Particles& p, I i) { return !p.due || p.due[firstOf(i) / clusterSize] == Due; }
 
 // Cells are thin along x and a few particles wide along y and z: a row of cells is one stretch of memory.
 struct Grid {
@@ -87,6 +97,14 @@ struct Neighbourhood {
     VectorField position;          // of the other set
 };
 
+// Cubes of cells, for local steps. What is known of each:
+struct Blocks {
+    Int3 count, size;              // along each axis, in cells; the last ones are larger
+    real* speed2;                  // (m/s)^2, mean at the last decision of who rests
+    int* calm;                     // decisions for which nothing has happened around
+    uint8_t* due;                  // whether it has a particle that is due
+};
+
 struct Constants {
     real support, support2, inverseSupport2;      // R, R^2, 1/R^2
     real kernelScale, gradientScale;              // m norm/R^3, m gradientNorm/R^5, m the mass in sums
@@ -117,6 +135,7 @@ struct Constants {
     bool periodic;                                // any of them
     real restitution, friction;
     real soundSpeed, cfl, maxStep, fixedStep, viscousStep;
+    real restSpeed;                               // below that share of the speed of sound fluid may rest, 0: nothing rests
     Vector<real> stirCenter, stirVelocity;
     real stirRadius;
 };
@@ -143,6 +162,7 @@ struct View {
     Grid grid;
     Constants c;
     StepState* state;
+    Blocks blocks;
 };
 
 // m/s^2, at the run's time, which is on the device: a recorded step needs no new constants while it grows. Passes ask outside of their loops: a branch among

@@ -1,0 +1,286 @@
+// Steps of their own for particles (time.mode local). A step of the whole is as long as sound allows; in it each particle takes one, two, four, ...
+// steps, as its speed and acceleration ask for, and forces are evaluated only where a particle is due. A particle's velocity changes where its
+// own step begins, so that in between it is where its straight line leads: neighbours see nothing extrapolated. Blocks of cells whose
+// surroundings have been calm for long rest: they are neither evaluated nor moved until something comes near.
+#if defined(SPINDRIFT_SIM_LOCAL_STEPS_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SPINDRIFT_SIM_LOCAL_STEPS_H
+#undef SPINDRIFT_SIM_LOCAL_STEPS_H
+#else
+#define SPINDRIFT_SIM_LOCAL_STEPS_H
+#endif
+
+#include "device/buffer.h"
+#include "sim/passes.h"
+
+#include <algorithm>
+
+namespace spindrift::LANES {
+
+// Parts of a step that particles' own steps are whole numbers of: 1/64 is the shortest.
+inline constexpr int deepestLevel = 6, parts = 1 << deepestLevel;
+// Who rests is decided every few steps, in which nothing crosses a spacing. So many decisions a block's surroundings must have been calm for before
+// it rests, and so many after which it wakes if any neighbour is awake.
+inline constexpr int stepsToDecide = 8, calmDecisions = 32, napDecisions = 96;
+HD inline bool decides(const StepState& s) { return s.moment == 0 && s.steps % stepsToDecide == 0; }
+
+HD inline bool isDue(real level, const StepState& s) { return level >= real(s.level); }
+
+// f(first, end) for the stretches of slots that block b is, of fluid or walls, by where particles were sorted in.
+template <class F> HD inline void forStretches(const View& v, const int* cellStart, int b, const F& f) {
+    const Blocks& blocks = v.blocks;
+    const Int3 at{b % blocks.count.x, b / blocks.count.x % blocks.count.y, b / (blocks.count.x * blocks.count.y)};
+    auto end = [](int k, int count, int size, int cells) { return k + 1 == count ? cells : (k + 1) * size; };
+    const int lastX = end(at.x, blocks.count.x, blocks.size.x, v.grid.cells.x), lastY = end(at.y, blocks.count.y, blocks.size.y, v.grid.cells.y);
+    const int lastZ = end(at.z, blocks.count.z, blocks.size.z, v.grid.cells.z);
+    for (int z = at.z * blocks.size.z; z < lastZ; ++z)
+        for (int y = at.y * blocks.size.y; y < lastY; ++y) {
+            const int* row = cellStart + v.grid.row(y, z);
+            f(row[at.x * blocks.size.x], row[lastX]);
+        }
+}
+// f(i) for its particles.
+template <class F> HD inline void forParticles(const View& v, const int* cellStart, int b, const F& f) {
+    forStretches(v, cellStart, b, [&](int first, int end) {
+        for (int i = first; i < end; ++i) f(i);
+    });
+}
+
+// f(b) for block b and those around it.
+template <class F> HD inline void forBlocksAround(const View& v, int b, const F& f) {
+    const Int3 n = v.blocks.count;
+    const int x = b % n.x, y = b / n.x % n.y, z = b / (n.x * n.y);
+    auto first = [](int k, int wraps) { return wraps ? k - 1 : k > 0 ? k - 1 : 0; };
+    auto last = [](int k, int count, int wraps) { return wraps || k + 1 < count ? k + 1 : k; };
+    for (int c = first(z, v.grid.wraps.z); c <= last(z, n.z, v.grid.wraps.z); ++c)
+        for (int r = first(y, v.grid.wraps.y); r <= last(y, n.y, v.grid.wraps.y); ++r)
+            for (int a = first(x, v.grid.wraps.x); a <= last(x, n.x, v.grid.wraps.x); ++a)
+                f((Grid::wrapped(c, n.z) * n.y + Grid::wrapped(r, n.y)) * n.x + Grid::wrapped(a, n.x));
+}
+
+// At the beginning of a step: how long it is. It ends where the run is to be looked at.
+struct BeginStep {
+    using Index = int;
+    View v;
+    HD void operator()(int) const {
+        StepState& s = *v.state;
+        if (s.moment == 0) s.longest = untilStop(s, min(real(2) * acousticStep(v.c, real(s.speed)), min(v.c.maxStep, v.c.viscousStep)));
+    }
+};
+
+// Of each block its mean square speed, or that of moving walls in it; -1 where nothing moves.
+struct MeasureBlocks {
+    using Index = int;
+    View v;
+    HD void operator()(int b) const {
+        if (!decides(*v.state)) return;
+        real sum = 0, walls2 = 0;
+        int count = 0;
+        forParticles(v, v.fluidNearFluid.cellStart, b, [&](int i) {
+            const Vector<real> u = load(v.fluid.velocity, i);
+            if (v.fluid.id[i] >= 0) sum += dot(u, u), ++count;
+        });
+        if (v.walls.ownVelocity.data)
+            forParticles(v, v.wallsNearFluid.cellStart, b, [&](int i) {
+                const Vector<real> u = load(v.walls.ownVelocity, i);
+                if (v.walls.id[i] >= 0) walls2 = max(walls2, dot(u, u));
+            });
+        const bool still = sum + walls2 == 0 && (count == 0 || v.blocks.calm[b] >= calmDecisions);
+        v.blocks.speed2[b] = still ? real(-1) : max(sum / real(count > 0 ? count : 1), walls2);
+    }
+};
+
+// Who rests: blocks whose surroundings have long been slower than restSpeed c. They wake when something faster comes near, and after a while if
+// any of their neighbours is awake, for these may have changed slowly. Fluid that rests doesn't move at all, and its density is the mean of the calm
+// time: with sound frozen in, rho c u, it would push its neighbours without an end.
+struct RestBlocks {
+    using Index = int;
+    View v;
+    HD void operator()(int b) const {
+        if (!decides(*v.state)) return;
+        int& calm = v.blocks.calm[b];
+        const bool rested = calm >= calmDecisions;
+        if (!rested && v.blocks.speed2[b] < 0) return;   // nobody is here
+        real speed2 = -1;
+        forBlocksAround(v, b, [&](int other) { speed2 = max(speed2, v.blocks.speed2[other]); });
+        const real rest = v.c.restSpeed * v.c.soundSpeed, limit = rested ? wake * rest : rest;
+        calm = speed2 < limit * limit && (calm < napDecisions || speed2 < 0) ? min(calm + 1, napDecisions) : 0;
+        const bool rests = calm >= calmDecisions;
+        forParticles(v, v.fluidNearFluid.cellStart, b, [&](int i) {
+            if (v.fluid.id[i] < 0) return;
+            const real mean = load(v.fluid.calmDensity, i);
+            if (!rested) store(v.fluid.calmDensity, i, mean + (load(v.fluid.density, i) - mean) / real(calm > 0 ? calm : 1));
+            store(v.fluid.level, i, rests ? resting : real(0));
+            if (!rests) return;
+            store(v.fluid.velocity, i, Vector<real>{0, 0, 0});
+            storeState(v, i, load(v.fluid.calmDensity, i));
+            if (v.fluid.densityRate.data) store(v.fluid.densityRate, i, real(0));
+        });
+    }
+    HD static int min(int a, int b) { return a < b ? a : b; }
+    // Falling asleep disturbs the neighbours, by about the speed that was there.
+    static constexpr real wake = 4;
+};
+
+// Clusters with a particle that is due.
+struct FindDueClusters {
+    using Index = int;
+    View v;
+    HD void operator()(int cluster) const {
+        bool due = false;
+        for (int i = cluster * clusterSize; i < (cluster + 1) * clusterSize; ++i) due = due || isDue(load(v.fluid.level, i), *v.state);
+        v.fluid.due[cluster] = due ? Due : NotDue;
+    }
+};
+struct FindDueBlocks {
+    using Index = int;
+    View v;
+    HD void operator()(int b) const {
+        bool due = false;
+        forStretches(v, v.fluidNearFluid.cellStart, b, [&](int first, int end) {
+            for (int c = first / clusterSize; c * clusterSize < end; ++c) due = due || v.fluid.due[c] == Due;
+        });
+        v.blocks.due[b] = due;
+    }
+};
+// Of blocks in touch with one that is due, the clusters of fluid that may have neighbours that are, and the clusters of walls.
+struct SpreadDue {
+    using Index = int;
+    View v;
+    HD void operator()(int b) const {
+        bool near = false;
+        forBlocksAround(v, b, [&](int other) { near = near || v.blocks.due[other]; });
+        if (!near) return;
+        forStretches(v, v.fluidNearFluid.cellStart, b, [&](int first, int end) {
+            for (int c = first / clusterSize; c * clusterSize < end; ++c)
+                if (v.fluid.due[c] != Due) mark(v.fluid.due[c], NearDue);
+        });
+        forStretches(v, v.wallsNearFluid.cellStart, b, [&](int first, int end) {
+            for (int c = first / clusterSize; c * clusterSize < end; ++c) mark(v.walls.due[c], Due);
+        });
+    }
+    // Blocks may share a cluster; both write the same.
+    HD static void mark(uint8_t& flag, uint8_t value) {
+#ifdef __CUDA_ARCH__
+        flag = value;
+#else
+        __atomic_store_n(&flag, value, __ATOMIC_RELAXED);
+#endif
+    }
+};
+struct ForgetDue {
+    using Index = int;
+    Particles p;
+    HD void operator()(int cluster) const { p.due[cluster] = NotDue; }
+};
+
+// Where a particle's own step begins: how long it is, and v += a dt. The longest is for calm fluid, dt <= 0.02 sqrt(h/(eps+|a|)) and 0.05 h/(eps+|u|)
+// (Reinhardt 2017) for cfl = 0.4; the rest takes what would be good for all if all were like it.
+struct KickDue {
+    using Index = Quad;
+    using R = Real<Quad>;
+    View v;
+    HD void operator()(Quad i) const {
+        const R before = load(v.fluid.level, i), one = 1, now = real(v.state->level);
+        const Vector<R> u = load(v.fluid.velocity, i), a = load(v.fluid.acceleration, i);
+        const R pull = squareRoot(dot(a, a)) + R(little), speed = squareRoot(dot(u, u)) + R(little);
+        const R h = v.c.support / 2, cfl = v.c.cfl, fall = squareRoot(h / pull);
+        const R calm = cfl * min(R(real(0.125)) * fall, R(real(0.25)) * h / speed);
+        const R wanted = max(calm, min(cfl * h / (R(v.c.soundSpeed) + speed), R(real(0.25)) * fall));
+        R step = real(v.state->longest / (1 << v.state->level)), level = now;
+        for (int k = v.state->level; k < deepestLevel; ++k) {
+            const auto tooLong = step > wanted;
+            step = select(tooLong, R(real(0.5)) * step, step);
+            level = select(tooLong, level + one, level);
+        }
+        const auto isDue = before > now - R(real(0.5));
+        store(v.fluid.level, i, select(isDue, level, before));
+        store(v.fluid.velocity, i, addScaled(u, select(isDue, step, R(0)), a));
+    }
+    static constexpr real little = real(1e-3);   // m/s, m/s^2
+};
+
+// The largest speed, the deepest level, and how many particles were awake and due.
+struct Motion {
+    float speed2 = 0;   // (m/s)^2
+    int deepest = 0;
+    double awake = 0, due = 0;
+    HD_OUT void add(const Motion& o) {
+        speed2 = o.speed2 > speed2 ? o.speed2 : speed2;
+        deepest = o.deepest > deepest ? o.deepest : deepest;
+        awake += o.awake, due += o.due;
+    }
+};
+struct FindMotion {
+    Particles p;
+    const StepState* state;
+    HD void addTo(Motion& m, int i) const {
+        const real level = load(p.level, i);
+        if (level < 0) return;
+        const Vector<real> u = load(p.velocity, i);
+        m.add({float(dot(u, u)), int(level), 1, isDue(level, *state) ? 1.0 : 0.0});
+    }
+};
+
+// How long it is until the next particle is due.
+struct ChooseMoment {
+    using Index = int;
+    View v;
+    const Motion* motion;
+    int count;   // of particles
+    HD void operator()(int) const {
+        StepState& s = *v.state;
+        const int part = parts >> motion->deepest, next = (s.moment / part + 1) * part;
+        s.dt = s.longest * (next - s.moment) / parts;
+        advanceTime(s, s.dt);
+        s.moment = next % parts;
+        s.level = 0;
+        while (s.moment % (parts >> s.level) != 0) ++s.level;
+        if (s.moment == 0) ++s.steps;
+        s.speed = squareRoot(real(motion->speed2));
+        s.evaluations += motion->due;
+        s.allDue = s.level == 0 && motion->awake == count && !decides(s);
+    }
+};
+
+// All are due at the beginning of the next step.
+struct WakeParticles {
+    using Index = int;
+    Particles p;
+    HD void operator()(int i) const { store(p.level, i, p.id[i] < 0 ? resting : real(0)); }
+};
+struct WakeBlocks {
+    using Index = int;
+    Blocks blocks;
+    HD void operator()(int b) const { blocks.calm[b] = 0; }
+};
+
+template <class Device> class LocalSteps {
+public:
+    explicit LocalSteps(Device& device) : device_(device) {}
+    // Blocks are whole cells and no smaller than `reach` (m), no less than that of neighbours: these lie in blocks that touch.
+    void resize(const Grid& grid, real reach) {
+        auto along = [&](int cells, real perMetre) { return std::clamp(int(std::ceil(double(reach * perMetre))), 1, cells); };
+        size_ = {along(grid.cells.x, grid.perMetre.x), along(grid.cells.y, grid.perMetre.y), along(grid.cells.z, grid.perMetre.z)};
+        count_ = {grid.cells.x / size_.x, grid.cells.y / size_.y, grid.cells.z / size_.z};
+        speed2_.resize(blocks()), calm_.resize(blocks()), due_.resize(blocks());
+        motion_.resize(1);
+        wake();
+    }
+    void wake() { device_.forEach(int(blocks()), WakeBlocks{view()}); }
+    bool used() const { return speed2_.size() > 0; }
+    size_t blocks() const { return size_t(count_.x) * size_t(count_.y) * size_t(count_.z); }
+    Motion* motion() { return motion_.data(); }
+    Blocks view() const { return {count_, size_, speed2_.data(), calm_.data(), due_.data()}; }
+
+private:
+    Device& device_;
+    Int3 count_{0, 0, 0}, size_{1, 1, 1};
+    Buffer<real, Device> speed2_{device_};
+    Buffer<int, Device> calm_{device_};
+    Buffer<uint8_t, Device> due_{device_};
+    Buffer<Motion, Device> motion_{device_};
+};
+
+}  // namespace spindrift::LANES
+
+#endif

@@ -1,0 +1,138 @@
+// What a step consists of. Included by simulation_on.h.
+#if defined(SPINDRIFT_SIM_PLAN_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SPINDRIFT_SIM_PLAN_H
+#undef SPINDRIFT_SIM_PLAN_H
+#else
+#define SPINDRIFT_SIM_PLAN_H
+#endif
+
+namespace spindrift::LANES {
+
+// The passes that this scene needs, in order. What it doesn't need isn't in the list.
+template <class Device> template <class K> void SimulationOn<Device>::makePlan() {
+    using S = SimulationOn;
+    plan_.clear();
+    rows_.clear();
+    switch (scene_.time.integrator) {
+        // v += a dt, x += v dt.
+        case Integrator::SymplecticEuler:
+            if (hasLocalSteps()) {
+                stepLocally<K>();
+                break;
+            }
+            evaluateForces<K>(Initial::Yes);
+            chooseStep();
+            advance<K, Kick, Drift>({"integrate", "kick", "drift"});
+            break;
+        // Verlet 1967 with velocities: forces at the end of the step with the velocity foreseen there, of which then half is
+        // taken back for half of the new acceleration.
+        case Integrator::VelocityVerlet:
+            chooseStep();
+            advance<K, HalfKick, Drift | KeepVelocity | KickOn>({"integrate", "kick", "drift"});
+            evaluateForces<K>(Initial::Yes);
+            addPass("second kick", &S::template onFluid<Integrate<Resume | HalfKick>>);
+            break;
+        // Half a step ahead; from there the forces and then, with the mean velocity, the rates of the whole step (Monaghan 1989;
+        // the mean of old and new velocity keeps oscillations from growing, as in a leapfrog).
+        case Integrator::PredictorCorrector:
+            evaluateForces<K>(Initial::Yes);
+            chooseStep();
+            advance<K, 0, Keep | HalfDrift | KickOn>({"predict", "", "predict"});
+            evaluateForces<K>(Initial::No);
+            addPass("extremes", &S::countCorrection, Initial::No, keepsLists ? "" : noLists);
+            advance<K, Resume | HalfKick, Resume | Drift | KickOn>({"correct", "second kick", "correct"});
+            break;
+    }
+    noteTerms(OptionalTerms{});
+    addPass("solid collisions", &S::template onFluid<KeepOutOfSolids>, Initial::No, solids_.count() > 0 ? "" : "there are no solids");
+    measureLoads_ = loadPass<K>();
+    sortsInStep_ = int(std::count_if(plan_.begin(), plan_.end(), [](const Row& row) { return row.run == &S::sort; }));
+    for (Row& row : plan_) row.time = timeOf(row.name);
+}
+
+// Acceleration of where the particles are.
+template <class Device> template <class K> void SimulationOn<Device>::evaluateForces(Initial initial) {
+    using S = SimulationOn;
+    addPass("solids", initial == Initial::Yes ? &S::moveSolids : &S::moveSolidsHalfWay, initial,
+            solids_.moves() ? "" : solids_.count() > 0 ? "no solid moves" : "there are no solids");
+    addPass("sort", &S::sort, initial);
+    addPass("neighbours", &S::findNeighbours, initial, keepsLists ? "" : noLists);
+    addPass("rest", &S::findWhoRests, initial, !hasLocalSteps() ? allAlike : constants_.restSpeed > 0 ? "" : "nobody rests (time.rest_speed)");
+    addPass("due", &S::findWhoIsDue, initial, hasLocalSteps() ? "" : allAlike);
+    carriesDensity(scene_) ? addPass("equation of state", &S::template onFluid<ApplyEquationOfState>, initial)
+                           : addPass("density", pairPass<ComputeDensity<K>>(), initial);
+    addPass("walls", wallPass<K>(), initial, whyNoWallPressure());
+    addPass("forces", forcePass<K>(), initial);
+}
+
+// Symplectic Euler from one moment to the next at which anybody is due.
+template <class Device> template <class K> void SimulationOn<Device>::stepLocally() {
+    using S = SimulationOn;
+    addPass("step", &S::beginStep);
+    evaluateForces<K>(Initial::Yes);
+    addPass("kick", &S::template onFluid<KickDue>);
+    addPass("stir", &S::template onFluid<StirFluid>, Initial::No, stir_.radius > 0 ? "" : "nobody stirs");
+    addPass("moment", &S::chooseMoment);
+    if (!carriesDensity(scene_)) return addPass("drift", &S::template onFluid<Integrate<Drift>>);
+    addPass("density rate", ratePass<K>());
+    addPass("drift", &S::template onFluid<Integrate<Drift | DriftDensity>>);
+}
+
+template <class Device> void SimulationOn<Device>::chooseStep() {
+    using S = SimulationOn;
+    addPass("extremes", fillsSpace() ? &S::findExtremes<true> : &S::findExtremes<false>, Initial::No,
+            keepsLists || shifts() || constants_.fixedStep <= 0 ? "" : "the time step is fixed (time.mode)");
+    addPass("time step", &S::chooseTimeStep);
+    addPass("stir", &S::template onFluid<StirFluid>, Initial::No, stir_.radius > 0 ? "" : "nobody stirs");
+}
+
+// In one pass; where density is carried in two, between which its rate comes.
+template <class Device> template <class K, unsigned kick, unsigned drift> void SimulationOn<Device>::advance(Names names) {
+    using S = SimulationOn;
+    if (!carriesDensity(scene_)) return addPass(names.both, &S::template onFluid<Integrate<kick | drift>>);
+    if constexpr (kick != 0) addPass(names.kick, &S::template onFluid<Integrate<kick>>);
+    addPass(shifts() ? "transport" : "density rate", ratePass<K>());
+    addPass(names.drift, fillsSpace() ? &S::template onFluid<Integrate<drift | DriftDensity | DriftShifted | KeepVolume>>
+                         : shifts()   ? &S::template onFluid<Integrate<drift | DriftDensity | DriftShifted>>
+                                      : &S::template onFluid<Integrate<drift | DriftDensity>>);
+}
+
+template <class Device> template <class K> auto SimulationOn<Device>::wallPass() const -> PassFunction {
+    using S = SimulationOn;
+    if (shifts())
+        return fluidSticks() ? &S::template onWalls<ExtrapolateToWalls<K, true, true>>
+                             : &S::template onWalls<ExtrapolateToWalls<K, false, true>>;
+    return fluidSticks() ? &S::template onWalls<ExtrapolateToWalls<K, true, false>>
+                         : &S::template onWalls<ExtrapolateToWalls<K, false, false>>;
+}
+
+// The first pass over the fluid's neighbours in a step prunes the lists.
+template <class Device> template <class K> auto SimulationOn<Device>::forcePass() const -> PassFunction {
+    if (fillsSpace())
+        return *LaminarViscosity::skipped(scene_) ? forces<K, Lists::Prune>(TermList<CorrectedPressureForce>{})
+                                                  : forces<K, Lists::Prune>(TermList<CorrectedPressureForce, LaminarViscosity>{});
+    if (carriesDensity(scene_))
+        return chooseTerms(scene_, [](auto terms) { return forces<K, Lists::Prune>(terms); }, TermList<PressureForce>{}, Viscosities{});
+    if (scene_.simulation.formulation == Formulation::Classic)
+        return chooseTerms(scene_, [](auto terms) { return forces<K, Lists::Pruned>(terms); }, TermList<PressureForce>{},
+                           TermList<ClassicViscosity>{});
+    return chooseTerms(scene_, [this](auto terms) { return pairPass<ComputeForces<K, Lists::Pruned, decltype(terms)>>(); },
+                       TermList<PressureForce>{}, Viscosities{});
+}
+
+// What fluid does to solids, by the terms that act on the fluid. (Corrected gradients have no opposite: their pressure is taken as it is
+// without.)
+template <class Device> template <class K> auto SimulationOn<Device>::loadPass() const {
+    return chooseTerms(scene_, [](auto terms) { return &SimulationOn::template loads<ComputeWallLoads<K, decltype(terms)>>; },
+                       TermList<PressureForce>{}, Viscosities{});
+}
+
+template <class Device> template <class K> auto SimulationOn<Device>::ratePass() const -> PassFunction {
+    if (fillsSpace()) return &SimulationOn::template onFluid<ComputeTransport<K, false>>;
+    return shifts() ? &SimulationOn::template onFluid<ComputeTransport<K, true>>
+                    : &SimulationOn::template onFluid<ComputeDensityRate<K>>;
+}
+
+}  // namespace spindrift::LANES
+
+#endif
