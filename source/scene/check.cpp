@@ -25,6 +25,8 @@ constexpr double BytesPerParticle = 400;
 constexpr double BytesPerCell = 16;
 // On a GPU: state, sorted copies, sort and vertices; what carried density and shifting add; boundary particles have no velocity. Cells: two starts and a count.
 constexpr double GpuBytesPerParticle = 136, GpuBytesPerCarried = 8, GpuBytesPerShifted = 32, GpuBytesPerWall = 76, GpuBytesPerCell = 13;
+// Local steps: a level, the mean density of calm and their sorted copies, those of density and acceleration, a flag.
+constexpr double GpuBytesPerLocalStep = 37, GpuBytesPerLocalWall = 1;
 constexpr double HostBytesPerGpuParticle = 100;
 constexpr double GpuBytesAnyway = 64 << 20;
 // Particle ids are 32-bit; walls and fluid together stay clear of the limit.
@@ -331,9 +333,10 @@ static double keptBytes(const Scene& scene) {
 
 int64_t estimateGpuMemory(const Scene& scene, ParticleCount count) {
     const double fluid = double(count.fluid), walls = double(count.walls);
-    const double more = (carriesDensity(scene) ? GpuBytesPerCarried : 0) +
+    const bool local = scene.time.mode == TimeMode::Local;
+    const double more = (local ? GpuBytesPerLocalStep : 0) + (carriesDensity(scene) ? GpuBytesPerCarried : 0) +
                          (shiftsParticles(scene) ? GpuBytesPerShifted : 0);
-    const double bytes = (GpuBytesPerParticle + more + keptBytes(scene)) * fluid + GpuBytesPerWall * walls +
+    const double bytes = (GpuBytesPerParticle + more + keptBytes(scene)) * fluid + (GpuBytesPerWall + (local ? GpuBytesPerLocalWall : 0)) * walls +
                          GpuBytesPerCell * mostCells(scene, fluid + walls) + GpuBytesAnyway;
     return int64_t(std::min(bytes, 9e18));
 }

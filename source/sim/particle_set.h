@@ -114,7 +114,13 @@ public:
     void keepVelocity() { keepsVelocity_ = true; }
     void keepState() { keepsVelocity_ = keepsState_ = true; }
     // Particles have steps of their own, or walls are but looked at where fluid is due.
-    void stepLocally(bool locally) { stepsLocally_ = locally, resize(slots_); }
+    void stepLocally(bool locally) {
+        stepsLocally_ = locally;
+        resize(slots_);
+        if (locally) return;
+        for (auto* b : {&level_, &sortedLevel_, &calmDensity_, &sortedCalmDensity_, &sortedAcceleration_, &sortedDensityRate_}) b->release();
+        due_.release();
+    }
     // Particles that never move are sorted once.
     void keepOrder() {
         sortedId_.release(), key_.release(), order_.release();
@@ -170,7 +176,7 @@ private:
         pressureTerm_.resize(slots);
         if (carriesVelocity_) velocity_.resize(vectorSize(slots));
         if (hasDensity_) density_.resize(slots);
-        stepsLocally_ ? due_.resize(size_t(slots / clusterSize)) : due_.release();
+        if (stepsLocally_) due_.resize(size_t(slots / clusterSize));
         if (kind_ == Kind::Walls) {
             mass_.resize(slots);
             if (carriesVelocity_) outward_.resize(vectorSize(slots));
@@ -182,8 +188,7 @@ private:
         if (carriesDensity_) densityRate_.resize(slots);
         if (shifts_)
             for (auto* field : {&shiftVelocity_, &shiftAcceleration_}) field->resize(vectorSize(slots));
-        stepsLocally_ ? level_.resize(slots) : level_.release();
-        stepsLocally_ ? calmDensity_.resize(slots) : calmDensity_.release();
+        if (stepsLocally_) level_.resize(slots), calmDensity_.resize(slots);
         resizeKept(kept_, slots);
     }
     bool hasLevels() const { return stepsLocally_ && kind_ == Kind::Fluid; }

@@ -38,6 +38,7 @@ public:
     void step(int n) override { s_.step(n); }
     void apply(const Scene& scene) override { s_.apply(scene); }
     void stir(const Stir& stir) override { s_.stir(stir); }
+    void stopAt(double time) override { s_.stopAt(time); }
     int fluidCount() const override { return s_.fluidCount(); }
     int wallCount() const override { return s_.wallCount(); }
     int solidParticleCount() const override { return s_.solidParticleCount(); }

@@ -9,10 +9,11 @@
 namespace spindrift {
 namespace {
 
-uint64_t hashAfter(const std::string& file, int threads, int steps, int change = 0, Integrator integrator = {}) {
+uint64_t hashAfter(const std::string& file, int threads, int steps, int change = 0, Integrator integrator = {}, TimeMode mode = TimeMode::Cfl) {
     Scene scene = loadScene(std::string(SPINDRIFT_SOURCE_DIR) + "/configs/" + file);
     scene.compute.threads = threads;
     scene.time.integrator = integrator;
+    if (mode == TimeMode::Local) scene.time.mode = mode;
     scene.simulation.gravity.x += 1e-3f * float(change);
     auto simulation = makeSimulation(scene);
     simulation->step(steps);
@@ -40,6 +41,14 @@ TEST(Determinism, SameBitsWithEachIntegrator) {
             EXPECT_EQ(one, hashAfter(file, 3, 60, 0, i)) << file;
             EXPECT_NE(one, hashAfter(file, 1, 60)) << "the integrator makes no difference";
         }
+}
+
+TEST(Determinism, SameBitsWithLocalSteps) {
+    for (const char* file : {"test/dam_break_small.json", "test/ball_drop_small.json", "test/solids_small.json"}) {
+        const uint64_t one = hashAfter(file, 1, 200, 0, {}, TimeMode::Local);
+        EXPECT_EQ(one, hashAfter(file, 3, 200, 0, {}, TimeMode::Local)) << file;
+        EXPECT_NE(one, hashAfter(file, 1, 200)) << "local steps make no difference";
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Threads,
