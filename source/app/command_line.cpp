@@ -3,6 +3,7 @@
 #include "app/bench.h"
 #include "app/compare.h"
 #include "app/error_bench.h"
+#include "app/local_bench.h"
 #include "app/explain.h"
 #include "app/headless.h"
 #include "app/scene_choice.h"
@@ -219,7 +220,7 @@ CLI::App* addCompare(CLI::App& app, CompareOptions& options) {
     return command;
 }
 
-CLI::App* addBench(CLI::App& app, BenchOptions& options, bool& error, ErrorBenchOptions& errorOptions) {
+CLI::App* addBench(CLI::App& app, BenchOptions& options, bool& error, ErrorBenchOptions& errorOptions, bool& local) {
     CLI::App* command = app.add_subcommand("bench", "times whole steps and their passes");
     command->add_option("--only", options.only, "cases whose name contains this")->type_name("TEXT");
     command->add_option("--json", options.json, "writes the figures as JSON")->type_name("FILE");
@@ -232,10 +233,11 @@ CLI::App* addBench(CLI::App& app, BenchOptions& options, bool& error, ErrorBench
     command->add_option("--most", options.most, "leaves out the GPU's cases with more particles")->type_name("N")
         ->check(CLI::PositiveNumber);
     command->add_flag("--error", error, "run time against error instead, of flows with known answers; half an hour");
+    command->add_flag("--local", local, "local steps against the step of all instead; half an hour");
     command->add_option("--case", errorOptions.cases, "with --error: only this flow; may be repeated")->type_name("NAME")
         ->allow_extra_args(false);
     command->add_flag("--coarsest", errorOptions.coarsest, "with --error: only the coarsest resolution, minutes");
-    command->add_option("--out", errorOptions.out, "with --error: folder for tables and charts")->type_name("FOLDER");
+    command->add_option("--out", errorOptions.out, "with --error and --local: folder for tables and charts")->type_name("FOLDER");
     return command;
 }
 
@@ -288,9 +290,9 @@ int runCommandLine(int argc, const char* const* argv) {
     const CLI::App* explainCommand = addExplain(app, explained);
     const CLI::App* compareCommand = addCompare(app, comparison);
     BenchOptions benchmark;
-    bool benchesError = false;
+    bool benchesError = false, benchesLocal = false;
     ErrorBenchOptions errorBenchmark;
-    const CLI::App* benchCommand = addBench(app, benchmark, benchesError, errorBenchmark);
+    const CLI::App* benchCommand = addBench(app, benchmark, benchesError, errorBenchmark, benchesLocal);
     ValidateOptions validation;
     const CLI::App* validateCommand = addValidate(app, validation);
     StressOptions stressOptions;
@@ -309,6 +311,7 @@ int runCommandLine(int argc, const char* const* argv) {
     if (*runCommand) return runScene(run);
     if (*explainCommand) return explain(chooseScene(explained.scene, explained.choices));
     if (*compareCommand) return compare(comparison);
+    if (*benchCommand && benchesLocal) return benchLocalSteps({benchmark.only, errorBenchmark.out});
     if (*benchCommand) return benchesError ? benchError(errorBenchmark) : bench(benchmark);
     if (*stressCommand) return stress(stressOptions);
     if (*validateCommand) return validate(validation);

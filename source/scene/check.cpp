@@ -25,8 +25,8 @@ constexpr double BytesPerParticle = 400;
 constexpr double BytesPerCell = 16;
 // On a GPU: state, sorted copies, sort and vertices; what carried density and shifting add; boundary particles have no velocity. Cells: two starts and a count.
 constexpr double GpuBytesPerParticle = 136, GpuBytesPerCarried = 8, GpuBytesPerShifted = 32, GpuBytesPerWall = 76, GpuBytesPerCell = 13;
-// Local steps: a level, the mean density of calm and their sorted copies, those of density and acceleration, a flag.
-constexpr double GpuBytesPerLocalStep = 37, GpuBytesPerLocalWall = 1;
+// Local steps: a level and its sorted copy, those of density and acceleration, a flag.
+constexpr double GpuBytesPerLocalStep = 29, GpuBytesPerLocalWall = 1;
 constexpr double HostBytesPerGpuParticle = 100;
 constexpr double GpuBytesAnyway = 64 << 20;
 // Particle ids are 32-bit; walls and fluid together stay clear of the limit.

@@ -90,8 +90,7 @@ struct MeasureBlocks {
 };
 
 // Who rests: blocks whose surroundings have long been slower than restSpeed c. They wake when something faster comes near, and after a while if
-// any of their neighbours is awake, for these may have changed slowly. Fluid that rests doesn't move at all, and its density is the mean of the calm
-// time: with sound frozen in, rho c u, it would push its neighbours without an end.
+// any of their neighbours is awake, for these may have changed slowly. Fluid that rests doesn't move at all.
 struct RestBlocks {
     using Index = int;
     View v;
@@ -107,12 +106,9 @@ struct RestBlocks {
         const bool rests = calm >= calmDecisions;
         forParticles(v, v.fluidNearFluid.cellStart, b, [&](int i) {
             if (v.fluid.id[i] < 0) return;
-            const real mean = load(v.fluid.calmDensity, i);
-            if (!rested) store(v.fluid.calmDensity, i, mean + (load(v.fluid.density, i) - mean) / real(calm > 0 ? calm : 1));
             store(v.fluid.level, i, rests ? resting : real(0));
             if (!rests) return;
             store(v.fluid.velocity, i, Vector<real>{0, 0, 0});
-            storeState(v, i, load(v.fluid.calmDensity, i));
             if (v.fluid.densityRate.data) store(v.fluid.densityRate, i, real(0));
         });
     }
@@ -142,28 +138,43 @@ struct FindDueBlocks {
         v.blocks.due[b] = due;
     }
 };
-// Of blocks in touch with one that is due, the clusters of fluid that may have neighbours that are, and the clusters of walls.
+// Blocks in touch with one that is due, Watched those where somebody rests.
+struct FindNearBlocks {
+    using Index = int;
+    View v;
+    HD void operator()(int b) const {
+        bool near = false, rests = false;
+        forBlocksAround(v, b, [&](int other) { near = near || v.blocks.due[other]; });
+        if (near)
+            forParticles(v, v.fluidNearFluid.cellStart, b, [&](int i) { rests = rests || (load(v.fluid.level, i) < 0 && v.fluid.id[i] >= 0); });
+        v.blocks.near[b] = rests ? Watched : near ? NearDue : NotDue;
+    }
+};
+// Of these blocks the clusters of fluid and walls; and of those around watched ones, whose pairs with them count as well.
 struct SpreadDue {
     using Index = int;
     View v;
     HD void operator()(int b) const {
-        bool near = false;
-        forBlocksAround(v, b, [&](int other) { near = near || v.blocks.due[other]; });
-        if (!near) return;
+        const uint8_t near = v.blocks.near[b];
+        bool besideWatched = near != NotDue;
+        forBlocksAround(v, b, [&](int other) { besideWatched = besideWatched || v.blocks.near[other] == Watched; });
+        if (!besideWatched) return;
         forStretches(v, v.fluidNearFluid.cellStart, b, [&](int first, int end) {
             for (int c = first / clusterSize; c * clusterSize < end; ++c)
-                if (v.fluid.due[c] != Due) mark(v.fluid.due[c], NearDue);
+                raise(v.fluid.due[c], near == NotDue ? uint8_t(NearDue) : near);
         });
+        if (near == NotDue) return;
         forStretches(v, v.wallsNearFluid.cellStart, b, [&](int first, int end) {
-            for (int c = first / clusterSize; c * clusterSize < end; ++c) mark(v.walls.due[c], Due);
+            for (int c = first / clusterSize; c * clusterSize < end; ++c) raise(v.walls.due[c], Due);
         });
     }
-    // Blocks may share a cluster; both write the same.
-    HD static void mark(uint8_t& flag, uint8_t value) {
+    // Blocks may share a cluster, which is then the most that any of them says. (One that is a single particle has a single block.)
+    HD static void raise(uint8_t& flag, uint8_t value) {
 #ifdef __CUDA_ARCH__
-        flag = value;
+        if (flag < value) flag = value;
 #else
-        __atomic_store_n(&flag, value, __ATOMIC_RELAXED);
+        uint8_t before = __atomic_load_n(&flag, __ATOMIC_RELAXED);
+        while (before < value && !__atomic_compare_exchange_n(&flag, &before, value, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {}
 #endif
     }
 };
@@ -262,7 +273,7 @@ public:
         auto along = [&](int cells, real perMetre) { return std::clamp(int(std::ceil(double(reach * perMetre))), 1, cells); };
         size_ = {along(grid.cells.x, grid.perMetre.x), along(grid.cells.y, grid.perMetre.y), along(grid.cells.z, grid.perMetre.z)};
         count_ = {grid.cells.x / size_.x, grid.cells.y / size_.y, grid.cells.z / size_.z};
-        speed2_.resize(blocks()), calm_.resize(blocks()), due_.resize(blocks());
+        speed2_.resize(blocks()), calm_.resize(blocks()), due_.resize(blocks()), near_.resize(blocks());
         motion_.resize(1);
         wake();
     }
@@ -270,14 +281,14 @@ public:
     bool used() const { return speed2_.size() > 0; }
     size_t blocks() const { return size_t(count_.x) * size_t(count_.y) * size_t(count_.z); }
     Motion* motion() { return motion_.data(); }
-    Blocks view() const { return {count_, size_, speed2_.data(), calm_.data(), due_.data()}; }
+    Blocks view() const { return {count_, size_, speed2_.data(), calm_.data(), due_.data(), near_.data()}; }
 
 private:
     Device& device_;
     Int3 count_{0, 0, 0}, size_{1, 1, 1};
     Buffer<real, Device> speed2_{device_};
     Buffer<int, Device> calm_{device_};
-    Buffer<uint8_t, Device> due_{device_};
+    Buffer<uint8_t, Device> due_{device_}, near_{device_};
     Buffer<Motion, Device> motion_{device_};
 };
 

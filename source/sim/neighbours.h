@@ -41,8 +41,8 @@ enum class Lists { All, Prune, Pruned };
 // A group narrower than a cluster sees but a part of the hits, so that it can't prune.
 inline constexpr bool prunes = Group::size == clusterSize;
 
-// With `due` only those that are.
-template <Lists lists, class F>
+// With `due` only clusters of which it says at least `from`.
+template <Lists lists, uint8_t from = Due, class F>
 HD inline void forNeighbours(const View& v, const Neighbourhood& near, Group i, Vector<Wide> xi, const F& f, const uint8_t* due = nullptr) {
     ClusterList& list = near.lists[i.first / clusterSize];
     const bool pruned = prunes && lists == Lists::Pruned;
@@ -50,7 +50,7 @@ HD inline void forNeighbours(const View& v, const Neighbourhood& near, Group i, 
     const uint32_t count = pruned ? list.prunedCount : list.count;
     uint32_t kept = 0;
     for (uint32_t k = 0; k < count; ++k) {
-        if (due && due[clusters[k]] != Due) continue;
+        if (due && due[clusters[k]] < from) continue;
         const Four j{int(clusters[k]) * clusterSize};
         const Pair<Wide> pair = makePair(v.c, xi, load(near.position, j));
         f(pair, j);

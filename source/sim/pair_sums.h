@@ -51,14 +51,14 @@ public:
         });
         device.forTasks(count, [&](int b) {
             const int begin = b * block, end = std::min(clusters, begin + block);
-            auto isDueOne = [&](int c) { return isDue(pass.v.fluid, c * clusterSize); };
+            auto isDueOne = [&](int c) { return isDue<Pass::dueFrom>(pass.v.fluid, c * clusterSize); };
             for (int first = begin, last; first < end; first = last) {   // stretches of clusters that are due, or aren't
                 last = first + 1;
                 while (last < end && isDueOne(last) == isDueOne(first)) ++last;
                 if (isDueOne(first)) addUp<numbers>(b, block, first, last, pass.field().data);
             }
             for (int i = begin * clusterSize; i < end * clusterSize; i += Group::size)
-                if (isDue(pass.v.fluid, Group{i})) pass.finish(Group{i});
+                if (isDue<Pass::dueFrom>(pass.v.fluid, Group{i})) pass.finish(Group{i});
         });
     }
 
@@ -89,12 +89,12 @@ private:
         const auto own = pass.state(i);
         const Four same{i.first / clusterSize * clusterSize};
         auto sum = pass.of(makePair(v.c, x, load(v.fluid.position, same)), own, pass.state(same));   // each gives itself to all four
-        forNeighbours<Pass::lists>(v, v.fluidNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
+        forNeighbours<Pass::lists, Pass::dueFrom>(v, v.fluidNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
             const auto given = pass.of(p, own, pass.state(j));
             sum = sum + given;
             float* other = sums + size_t(j.first / clusterSize - firstCluster) * numbers;
             for (int k = 0; k < n; ++k) addToOthers<Pass::opposite>(other + k * clusterSize, component(given, k));
-        }, isDue(v.fluid, i) ? nullptr : v.fluid.due);
+        }, isDue<Pass::dueFrom>(v.fluid, i) ? nullptr : v.fluid.due);
         const auto whole = total(sum);
         float* at = sums + size_t(i.first / clusterSize - firstCluster) * numbers + i.first % clusterSize;
         for (int k = 0; k < n; ++k, at += clusterSize)

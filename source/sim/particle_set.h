@@ -29,7 +29,7 @@ public:
         return {slots_, id_.data(), {position_.data()}, {velocity_.data()}, {acceleration_.data()},
                 {density_.data()}, {inverseDensity_.data()}, {pressureTerm_.data()}, {mass_.data()}, {outward_.data()}, {ownVelocity_.data()},
                 {densityRate_.data()}, {shiftVelocity_.data()}, {shiftAcceleration_.data()},
-                {kept_.position.data()}, {kept_.velocity.data()}, {kept_.density.data()}, {level_.data()}, {calmDensity_.data()}, due_.data()};
+                {kept_.position.data()}, {kept_.velocity.data()}, {kept_.density.data()}, {level_.data()}, due_.data()};
     }
 
     // Takes over particles with ids firstId, firstId + 1, ...; boundary particles have no velocities. Densities only where they
@@ -65,7 +65,7 @@ public:
         sortedPosition_.resize(vectorSize(slots));
         if (kind_ == Kind::Fluid) sortedVelocity_.resize(vectorSize(slots));
         if (sortsDensity()) sortedDensity_.resize(slots);
-        if (hasLevels()) sortedLevel_.resize(slots), sortedCalmDensity_.resize(slots), sortedAcceleration_.resize(vectorSize(slots));
+        if (hasLevels()) sortedLevel_.resize(slots), sortedAcceleration_.resize(vectorSize(slots));
         if (hasLevels() && carriesDensity_) sortedDensityRate_.resize(slots);
         resizeKept(sortedKept_, slots);
         Particles sorted = view();
@@ -77,7 +77,6 @@ public:
         sorted.keptVelocity = {sortedKept_.velocity.data()};
         sorted.keptDensity = {sortedKept_.density.data()};
         sorted.level = {sortedLevel_.data()};
-        sorted.calmDensity = {sortedCalmDensity_.data()};
         sorted.acceleration = {sortedAcceleration_.data()};
         sorted.densityRate = {sortedDensityRate_.data()};
         device_.forEach(slots, Reorder{order_.data(), view(), sorted});
@@ -91,7 +90,7 @@ public:
         position_.swap(sortedPosition_);
         if (kind_ == Kind::Fluid) velocity_.swap(sortedVelocity_);
         if (sortsDensity()) density_.swap(sortedDensity_);
-        if (hasLevels()) level_.swap(sortedLevel_), calmDensity_.swap(sortedCalmDensity_), acceleration_.swap(sortedAcceleration_), densityRate_.swap(sortedDensityRate_);
+        if (hasLevels()) level_.swap(sortedLevel_), acceleration_.swap(sortedAcceleration_), densityRate_.swap(sortedDensityRate_);
         kept_.position.swap(sortedKept_.position);
         kept_.velocity.swap(sortedKept_.velocity);
         kept_.density.swap(sortedKept_.density);
@@ -118,7 +117,7 @@ public:
         stepsLocally_ = locally;
         resize(slots_);
         if (locally) return;
-        for (auto* b : {&level_, &sortedLevel_, &calmDensity_, &sortedCalmDensity_, &sortedAcceleration_, &sortedDensityRate_}) b->release();
+        for (auto* b : {&level_, &sortedLevel_, &sortedAcceleration_, &sortedDensityRate_}) b->release();
         due_.release();
     }
     // Particles that never move are sorted once.
@@ -188,7 +187,7 @@ private:
         if (carriesDensity_) densityRate_.resize(slots);
         if (shifts_)
             for (auto* field : {&shiftVelocity_, &shiftAcceleration_}) field->resize(vectorSize(slots));
-        if (stepsLocally_) level_.resize(slots), calmDensity_.resize(slots);
+        if (stepsLocally_) level_.resize(slots);
         resizeKept(kept_, slots);
     }
     bool hasLevels() const { return stepsLocally_ && kind_ == Kind::Fluid; }
@@ -244,7 +243,7 @@ private:
     Buffer<real, Device> densityRate_{device_}, shiftVelocity_{device_}, shiftAcceleration_{device_};
     Kept kept_{device_}, sortedKept_{device_};
     Buffer<uint8_t, Device> due_{device_};
-    Buffer<real, Device> level_{device_}, sortedLevel_{device_}, calmDensity_{device_}, sortedCalmDensity_{device_}, sortedAcceleration_{device_}, sortedDensityRate_{device_};
+    Buffer<real, Device> level_{device_}, sortedLevel_{device_}, sortedAcceleration_{device_}, sortedDensityRate_{device_};
     Buffer<real, Device> density_{device_}, inverseDensity_{device_}, pressureTerm_{device_}, mass_{device_}, outward_{device_},
         ownVelocity_{device_};
 };

@@ -43,7 +43,6 @@ struct Reorder {
         const real far = 2 * farAway * real(1 + i % 4);
         store(to.position, i, s < 0 ? Vector<real>{far, far, far} : load(from.position, s));
         if (to.level.data) store(to.level, i, s < 0 ? resting : load(from.level, s));
-        if (to.level.data) store(to.calmDensity, i, s < 0 ? real(0) : load(from.calmDensity, s));
         if (to.level.data) store(to.acceleration, i, s < 0 ? Vector<real>{0, 0, 0} : load(from.acceleration, s));
         if (to.level.data && to.densityRate.data) store(to.densityRate, i, s < 0 ? real(0) : load(from.densityRate, s));
         if (to.velocity.data) store(to.velocity, i, s < 0 ? Vector<real>{0, 0, 0} : load(from.velocity, s));
@@ -90,7 +89,7 @@ template <class Kernel> struct ComputeDensity {
     using R = Real<Group>;
     View v;
     HD void operator()(Group i) const {
-        if (!isDue(v.fluid, i)) return;
+        if (!isDue<dueFrom>(v.fluid, i)) return;
         const Vector<R> x = load(v.fluid.position, i);
         R fluid = 0;
         forNeighbours<lists>(v, v.fluidNearFluid, i, x, [&](const auto& p, Four) LANE_CALL { fluid += Kernel::w(p.q); });
@@ -106,6 +105,7 @@ template <class Kernel> struct ComputeDensity {
     }
     // For lists with each pair once (PairSums).
     static constexpr Lists lists = Lists::Prune;
+    static constexpr uint8_t dueFrom = Watched;
     static constexpr bool opposite = false;
     struct Nothing {};
     ScalarField field() const { return v.fluid.density; }
@@ -190,12 +190,13 @@ template <class R> struct Correction {
 template <class Kernel, Lists lists, class Terms> struct ComputeForces;
 template <class Kernel, Lists which, class... Terms> struct ComputeForces<Kernel, which, TermList<Terms...>> {
     static constexpr Lists lists = which;
+    static constexpr uint8_t dueFrom = which == Lists::Prune ? Watched : Due;   // the density's rate needs the pruned lists
     using Index = Group;
     using R = Real<Group>;
     static constexpr unsigned needs = TermList<Terms...>::needs;
     View v;
     HD void operator()(Group i) const {
-        if (!isDue(v.fluid, i)) return;
+        if (!isDue<dueFrom>(v.fluid, i)) return;
         const Vector<R> x = load(v.fluid.position, i);
         const State<R> own = state(i);
         Acceleration<R> a{};
@@ -248,7 +249,7 @@ template <class Kernel> struct ComputeDensityRate {
     using R = Real<Group>;
     View v;
     HD void operator()(Group i) const {
-        if (!isDue(v.fluid, i)) return;
+        if (!isDue<Watched>(v.fluid, i)) return;
         const Vector<real> gravity = gravityNow(v);
         const Vector<R> x = load(v.fluid.position, i), u = load(v.fluid.velocity, i);
         const R rho = load(v.fluid.density, i), diffusion = v.c.diffusion;

@@ -304,6 +304,7 @@ private:
         device_.forEach(fluid_.slots() / clusterSize, FindDueClusters{view()});
         device_.forEach(int(localSteps_.blocks()), FindDueBlocks{view()});
         device_.forEach(walls_.slots() / clusterSize, ForgetDue{walls_.view()});
+        device_.forEach(int(localSteps_.blocks()), FindNearBlocks{view()});
         device_.forEach(int(localSteps_.blocks()), SpreadDue{view()});
     }
     void chooseMoment() {

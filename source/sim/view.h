@@ -36,16 +36,16 @@ struct Particles {
     VectorField keptVelocity;      // m/s
     ScalarField keptDensity;       // kg/m^3
     ScalarField level;             // local steps only: how short a particle's own step is, longest / 2^level, or how it rests
-    ScalarField calmDensity;       // kg/m^3, local steps only: mean since its surroundings are calm
     uint8_t* due;                  // local steps only: per cluster, whether it is evaluated now
 };
 
 // The level of who rests.
 inline constexpr real resting = -1;
-// Of clusters. Near: not due itself, but maybe a neighbour of who is.
-enum : uint8_t { NotDue, NearDue, Due };
+// Of clusters. Near: not due itself, but maybe a neighbour of who is. Watched: near and resting, so that its density goes with its neighbours' places
+// as a wall's would; with a pressure of its own it would push them without an end.
+enum : uint8_t { NotDue, NearDue, Watched, Due };
 
-template <class I> HD inline bool isDue(const Particles& p, I i) { return !p.due || p.due[firstOf(i) / clusterSize] == Due; }
+template <uint8_t from = Due, class I> HD inline bool isDue(const Particles& p, I i) { return !p.due || p.due[firstOf(i) / clusterSize] >= from; }
 
 // Cells are thin along x and a few particles wide along y and z: a row of cells is one stretch of memory.
 struct Grid {
@@ -102,7 +102,7 @@ struct Blocks {
     Int3 count, size;              // along each axis, in cells; the last ones are larger
     real* speed2;                  // (m/s)^2, mean at the last decision of who rests
     int* calm;                     // decisions for which nothing has happened around
-    uint8_t* due;                  // whether it has a particle that is due
+    uint8_t *due, *near;           // whether it has a particle that is due; what its clusters are that have none
 };
 
 struct Constants {
