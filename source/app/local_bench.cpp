@@ -128,7 +128,7 @@ RunState readPool(const Scene& scene) {
 std::vector<Case> cases() {
     return {{"dam break", [] { return sceneOf("dam_break", {}); }, beginning, 0, 1, true},
             {"dam break to rest, 6k", [] { return sceneOf("dam_break", {{"simulation.spacing", "0.03"}}); }, beginning, 0, 16, true},
-            {"pool at rest", [] { return sceneOf("still_pool", {}); }, atRest, 2, 1, false},
+            {"pool at rest", [] { return sceneOf("still_pool", {{"time.rest_speed", "0.0002"}}); }, atRest, 2, 1, false},
             {"drop into a still pool", dropIntoPool, readPool, 0.14, 0.06, false},
             {"ball drop to rest, 1k", [] { return sceneOf("ball_drop", {{"simulation.spacing", "0.04"}}); }, beginning, 0, 16, false},
             {"ball drop to rest, 19k", [] { return sceneOf("ball_drop", {}); }, beginning, 0, 12, false}};

@@ -250,6 +250,7 @@ struct ChooseMoment {
         s.speed = squareRoot(real(motion->speed2));
         s.evaluations += motion->due;
         s.allDue = s.level == 0 && motion->awake == count && !decides(s);
+        s.allRest = motion->awake == 0 && !decides(s);
     }
 };
 

@@ -50,7 +50,7 @@ public:
         CHECK(int(state.particles.positions.size()) == fluidCount_);
         fluid_.upload(state.particles.positions, state.particles.velocities, densitiesOf(state), 0);
         StepState clock = state.clock;
-        clock.speed = 0, clock.allDue = false;   // a checkpoint doesn't know it
+        clock.speed = 0;   // a checkpoint doesn't know it
         device_.upload(clock_.data(), &clock, 1);
         wake();
         if (solids_.moves()) walls_.upload(wallsAtHome_, {}, {}, fluidCount_);
@@ -204,9 +204,16 @@ private:
     }
     // With local steps the plan leads to the next moment at which anybody is due.
     void stepOnce() {
+        if (allRest()) {
+            beginStep();
+            device_.forEach(1, ChooseMoment{view(), localSteps_.motion(), fluidCount_});
+            return;
+        }
         do runPlan();
         while (hasLocalSteps() && clock().moment != 0);
     }
+    // There is nothing to be done but to let time pass. (A GPU would have to be asked.)
+    bool allRest() { return !Device::recordsSteps && hasLocalSteps() && clock().allRest && stir_.radius <= 0 && !solids_.moves(); }
     StepState clock() {
         StepState clock;
         device_.download(&clock, clock_.data(), 1);
@@ -318,6 +325,9 @@ private:
     void wake() {
         if (!hasLocalSteps()) return;
         localSteps_.wake();
+        StepState awake = clock();
+        awake.allDue = awake.allRest = false;
+        device_.upload(clock_.data(), &awake, 1);
         device_.forEach(fluid_.slots(), WakeParticles{fluid_.view()});
     }
     // From the middle of the step to its end, where the middle's accelerations lead: dt/2 v + dt^2/2 a, and a shift that may

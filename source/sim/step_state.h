@@ -16,6 +16,7 @@ struct StepState {
     int moment = 0;          // where in it the run stands, in 64ths; outside of step() 0
     int level = 0;           // particles are due whose steps are longest / 2^level and shorter
     bool allDue = false;     // at this moment, for certain
+    bool allRest = false;    // until who rests is decided again
     double evaluations = 0;  // of a particle's forces, since the beginning of the run
 };
 
