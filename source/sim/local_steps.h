@@ -1,4 +1,4 @@
-// Steps of their own for particles (time.mode local). A step of the whole is as long as sound allows; in it each particle takes one, two, four, ...
+// Steps of their own for particles (time.mode local). A step of the whole is twice what cfl says; in it each particle takes one, two, four, ...
 // steps, as its speed and acceleration ask for, and forces are evaluated only where a particle is due. A particle's velocity changes where its
 // own step begins, so that in between it is where its straight line leads: neighbours see nothing extrapolated. Blocks of cells whose
 // surroundings have been calm for long rest: they are neither evaluated nor moved until something comes near.
@@ -184,8 +184,9 @@ struct ForgetDue {
     HD void operator()(int cluster) const { p.due[cluster] = NotDue; }
 };
 
-// Where a particle's own step begins: how long it is, and v += a dt. The longest is for calm fluid, dt <= 0.02 sqrt(h/(eps+|a|)) and 0.05 h/(eps+|u|)
-// (Reinhardt 2017) for cfl = 0.4; the rest takes what would be good for all if all were like it.
+// Where a particle's own step begins: how long it is, and v += a dt. The longest is for calm fluid, dt <= 0.05 sqrt(h/(eps+|a|)) and 0.1 h/(eps+|u|)
+// for cfl = 0.4, in the form of Reinhardt 2017 (there 0.02 and 0.05, with which half of a dam break takes half the step and errors are the same);
+// the rest takes what would be good for all if all were like it.
 struct KickDue {
     using Index = Quad;
     using R = Real<Quad>;
