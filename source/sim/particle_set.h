@@ -61,13 +61,7 @@ public:
         device_.forEach(slots_, FindCell{view(), grid, key_.data()});
         const int slots = device_.sortByCell(slots_, key_.data(), rows, grid.cells.x, clusterSize,
                                              cellStart_.data(), order_);
-        sortedId_.resize(slots);
-        sortedPosition_.resize(vectorSize(slots));
-        if (kind_ == Kind::Fluid) sortedVelocity_.resize(vectorSize(slots));
-        if (sortsDensity()) sortedDensity_.resize(slots);
-        if (hasLevels()) sortedLevel_.resize(slots), sortedAcceleration_.resize(vectorSize(slots));
-        if (hasLevels() && carriesDensity_) sortedDensityRate_.resize(slots);
-        resizeKept(sortedKept_, slots);
+        resizeSorted(slots);
         Particles sorted = view();
         sorted.id = sortedId_.data();
         sorted.position = {sortedPosition_.data()};
@@ -116,6 +110,7 @@ public:
     void stepLocally(bool locally) {
         stepsLocally_ = locally;
         resize(slots_);
+        if (locally && sortedId_.size() > 0) return resizeSorted(slots_);   // a recorded sort can't make room
         if (locally) return;
         for (auto* b : {&level_, &sortedLevel_, &sortedAcceleration_, &sortedDensityRate_}) b->release();
         due_.release();
@@ -189,6 +184,15 @@ private:
             for (auto* field : {&shiftVelocity_, &shiftAcceleration_}) field->resize(vectorSize(slots));
         if (stepsLocally_) level_.resize(slots);
         resizeKept(kept_, slots);
+    }
+    void resizeSorted(int slots) {
+        sortedId_.resize(slots);
+        sortedPosition_.resize(vectorSize(slots));
+        if (kind_ == Kind::Fluid) sortedVelocity_.resize(vectorSize(slots));
+        if (sortsDensity()) sortedDensity_.resize(slots);
+        if (hasLevels()) sortedLevel_.resize(slots), sortedAcceleration_.resize(vectorSize(slots));
+        if (hasLevels() && carriesDensity_) sortedDensityRate_.resize(slots);
+        resizeKept(sortedKept_, slots);
     }
     bool hasLevels() const { return stepsLocally_ && kind_ == Kind::Fluid; }
     bool sortsDensity() const { return carriesDensity_ || hasLevels(); }
