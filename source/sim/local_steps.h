@@ -19,8 +19,9 @@ namespace spindrift::LANES {
 // Parts of a step that particles' own steps are whole numbers of: 1/64 is the shortest.
 inline constexpr int deepestLevel = 6, parts = 1 << deepestLevel;
 // Who rests is decided every few steps, in which nothing crosses a spacing. So many decisions a block's surroundings must have been calm for before
-// it rests, and so many after which it wakes if any neighbour is awake.
-inline constexpr int stepsToDecide = 8, calmDecisions = 32, napDecisions = 96;
+// it rests, and so many after which it wakes if any neighbour is awake: each time that nothing has come of it twice as many. (Always as many, and in
+// a large pool a fourth of it is awake for ever.)
+inline constexpr int stepsToDecide = 8, calmDecisions = 32, firstNap = 96, longestNap = 64 * firstNap;
 HD inline bool decides(const StepState& s) { return s.moment == 0 && s.steps % stepsToDecide == 0; }
 
 HD inline bool isDue(real level, const StepState& s) { return level >= real(s.level); }
@@ -96,13 +97,15 @@ struct RestBlocks {
     View v;
     HD void operator()(int b) const {
         if (!decides(*v.state)) return;
-        int& calm = v.blocks.calm[b];
+        int &calm = v.blocks.calm[b], &nap = v.blocks.nap[b];
         const bool rested = calm >= calmDecisions;
         if (!rested && v.blocks.speed2[b] < 0) return;   // nobody is here
         real speed2 = -1;
         forBlocksAround(v, b, [&](int other) { speed2 = max(speed2, v.blocks.speed2[other]); });
         const real rest = v.c.restSpeed * v.c.soundSpeed, limit = rested ? wake * rest : rest;
-        calm = speed2 < limit * limit && (calm < napDecisions || speed2 < 0) ? min(calm + 1, napDecisions) : 0;
+        const bool disturbed = speed2 >= limit * limit, slept = calm >= nap && speed2 >= 0;
+        if (rested && (disturbed || slept)) nap = disturbed ? firstNap : min(2 * nap, longestNap);
+        calm = disturbed || slept ? 0 : min(calm + 1, nap);
         const bool rests = calm >= calmDecisions;
         forParticles(v, v.fluidNearFluid.cellStart, b, [&](int i) {
             if (v.fluid.id[i] < 0) return;
@@ -264,7 +267,7 @@ struct WakeParticles {
 struct WakeBlocks {
     using Index = int;
     Blocks blocks;
-    HD void operator()(int b) const { blocks.calm[b] = 0; }
+    HD void operator()(int b) const { blocks.calm[b] = 0, blocks.nap[b] = firstNap; }
 };
 
 template <class Device> class LocalSteps {
@@ -275,7 +278,7 @@ public:
         auto along = [&](int cells, real perMetre) { return std::clamp(int(std::ceil(double(reach * perMetre))), 1, cells); };
         size_ = {along(grid.cells.x, grid.perMetre.x), along(grid.cells.y, grid.perMetre.y), along(grid.cells.z, grid.perMetre.z)};
         count_ = {grid.cells.x / size_.x, grid.cells.y / size_.y, grid.cells.z / size_.z};
-        speed2_.resize(blocks()), calm_.resize(blocks()), due_.resize(blocks()), near_.resize(blocks());
+        speed2_.resize(blocks()), calm_.resize(blocks()), nap_.resize(blocks()), due_.resize(blocks()), near_.resize(blocks());
         motion_.resize(1);
         wake();
     }
@@ -283,13 +286,13 @@ public:
     bool used() const { return speed2_.size() > 0; }
     size_t blocks() const { return size_t(count_.x) * size_t(count_.y) * size_t(count_.z); }
     Motion* motion() { return motion_.data(); }
-    Blocks view() const { return {count_, size_, speed2_.data(), calm_.data(), due_.data(), near_.data()}; }
+    Blocks view() const { return {count_, size_, speed2_.data(), calm_.data(), nap_.data(), due_.data(), near_.data()}; }
 
 private:
     Device& device_;
     Int3 count_{0, 0, 0}, size_{1, 1, 1};
     Buffer<real, Device> speed2_{device_};
-    Buffer<int, Device> calm_{device_};
+    Buffer<int, Device> calm_{device_}, nap_{device_};
     Buffer<uint8_t, Device> due_{device_}, near_{device_};
     Buffer<Motion, Device> motion_{device_};
 };

@@ -102,6 +102,7 @@ struct Blocks {
     Int3 count, size;              // along each axis, in cells; the last ones are larger
     real* speed2;                  // (m/s)^2, mean at the last decision of who rests
     int* calm;                     // decisions for which nothing has happened around
+    int* nap;                      // and after how many it wakes for a look
     uint8_t *due, *near;           // whether it has a particle that is due; what its clusters are that have none
 };
 
