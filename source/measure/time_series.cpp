@@ -35,6 +35,7 @@ constexpr Quantity Quantities[] = {
     {"density_error", "1", [](const Measurement& m) { return m.densityError; }},
     {"max_density_error", "1", [](const Measurement& m) { return m.maxDensityError; }},
     {"max_speed", "m/s", [](const Measurement& m) { return m.maxSpeed; }},
+    {"evaluations", "", [](const Measurement& m) { return m.evaluations; }},   // of a particle's forces, since the beginning
 };
 
 struct SolidQuantity { const char *name, *unit; Vec3d SolidMeasurement::*of; };

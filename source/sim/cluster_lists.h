@@ -1,5 +1,5 @@
 // Neighbour lists for SIMD lanes: for each cluster of four particles the clusters that may hold neighbours. Rows of
-// cells narrow the choice, bounding boxes decide. Built once a step, read by every neighbour pass of the step. Of a set with itself they may hold
+// cells narrow the choice, bounding boxes decide. Built once a step or less often, read by every neighbour pass. Of a set with itself they may hold
 // each pair once, in the list of the earlier cluster, and no cluster with itself.
 #if defined(SPINDRIFT_SIM_CLUSTER_LISTS_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SPINDRIFT_SIM_CLUSTER_LISTS_H
@@ -56,31 +56,40 @@ public:
         size_t numbers = 0;
         for (const auto* arenas : {&entries_, &pruned_})
             for (const std::vector<uint32_t>& arena : *arenas) numbers += arena.capacity();
-        return int64_t(lists_.capacity() * sizeof(ClusterList) + (numbers + ends_.capacity()) * sizeof(uint32_t));
+        return int64_t(lists_.capacity() * sizeof(ClusterList) + listed_.capacity() + (numbers + ends_.capacity()) * sizeof(uint32_t));
     }
     // One beyond the last cluster that clusters [begin, end) have in their lists or are themselves.
     int endOf(int begin, int end) const {
         return int(*std::max_element(ends_.begin() + begin / piece_, ends_.begin() + (end - 1) / piece_ + 1));
     }
 
-    void build(Omp& device, const Grid& grid, float reach, const ClusterBoxes& own, const Particles& ownParticles,
-               const ClusterBoxes& other, const int* otherCellStart, bool once = false) {
-        const int clusters = ownParticles.slots / clusterSize;
-        lists_.resize(clusters);
-        const int piece = piece_ = std::max(64, (clusters + 255) / 256);
-        entries_.resize((clusters + piece - 1) / piece);
+    // Particles have another order or places: what there is holds no longer.
+    void forget(const Particles& own) {
+        const size_t clusters = size_t(own.slots / clusterSize);
+        lists_.assign(clusters, ClusterList{});
+        listed_.assign(clusters, false);
+        complete_ = false;
+        piece_ = std::max(64, (int(clusters) + 255) / 256);
+        entries_.resize((clusters + piece_ - 1) / piece_);
         pruned_.resize(entries_.size());
         ends_.resize(entries_.size());
-        if (otherCellStart[cellCount(grid)] == 0) {
-            std::fill(lists_.begin(), lists_.end(), ClusterList{});
-            return;
-        }
-        const Search search{grid, reach, own, other, otherCellStart, once,
+        for (size_t p = 0; p < ends_.size(); ++p) ends_[p] = uint32_t(std::min(clusters, (p + 1) * piece_));
+    }
+    // Makes the lists that are wanted and not there: of all clusters, or with `due` of those of which it doesn't say NotDue. Boxes and cells are those
+    // of when the last ones were forgotten.
+    void build(Omp& device, const Grid& grid, float reach, const ClusterBoxes& own, const uint8_t* due,
+               const ClusterBoxes& other, const int* otherCellStart, bool once = false) {
+        if (complete_ || otherCellStart[cellCount(grid)] == 0) return;
+        complete_ = !due;
+        const Search search{grid, reach, own, due, other, otherCellStart, once,
                             {periodOf(grid.wraps.x, grid.cells.x, grid.perMetre.x),
                              periodOf(grid.wraps.y, grid.cells.y, grid.perMetre.y),
                              periodOf(grid.wraps.z, grid.cells.z, grid.perMetre.z)}};
-        device.forRanges(clusters, piece, [&](int begin, int end) {
-            ends_[begin / piece] = buildPiece(begin, end, search, entries_[begin / piece], pruned_[begin / piece]);
+        device.forRanges(int(lists_.size()), piece_, [&](int begin, int end) {
+            const int piece = begin / piece_;
+            bool misses = false;
+            for (int c = begin; c < end && !misses; ++c) misses = search.wants(c) && !listed_[c];
+            if (misses) ends_[piece] = buildPiece(begin, end, search, entries_[piece], pruned_[piece]);
         });
     }
 
@@ -89,10 +98,12 @@ private:
         const Grid& grid;
         float reach;
         const ClusterBoxes& own;
+        const uint8_t* due;
         const ClusterBoxes& other;
         const int* cellStart;
         bool once;
         float period[3];   // m, 0 where there is none
+        bool wants(int cluster) const { return !due || due[cluster] != NotDue; }
     };
     static float periodOf(int wraps, int cells, float perMetre) { return wraps ? float(cells) / perMetre : 0; }
     static size_t cellCount(const Grid& g) { return size_t(g.cells.x) * g.cells.y * g.cells.z; }
@@ -102,6 +113,9 @@ private:
         uint32_t farthest = uint32_t(end);
         for (int first = begin, last; first < end; first = last) {
             last = endOfGroup(s, first, end);
+            bool wanted = false;
+            for (int c = first; c < last; ++c) wanted = wanted || listed_[c] || s.wants(c);
+            if (!wanted) continue;
             const RowRanges ranges = findRows(s, first, last);
             if (entries.size() < used + (ranges.clusters + width) * clustersTogether)
                 entries.resize(2 * (used + (ranges.clusters + width) * clustersTogether));
@@ -114,6 +128,7 @@ private:
                     if (used > before) farthest = std::max(farthest, entries[used - 1] + 1);
                 }
                 lists_[c].count = uint32_t(used - before);
+                listed_[c] = true;
             }
         }
         // The arena may have moved while it grew: only now are addresses known.
@@ -238,6 +253,8 @@ private:
     }
 
     int piece_ = 1;
+    bool complete_ = false;
+    std::vector<uint8_t> listed_;   // which clusters have their list
     std::vector<uint32_t> ends_;   // a piece: one beyond the last cluster in its lists
     std::vector<ClusterList> lists_;
     std::vector<std::vector<uint32_t>> entries_, pruned_;   // one arena a piece, kept from step to step

@@ -56,9 +56,9 @@ template <class Device> template <class K> void SimulationOn<Device>::evaluateFo
     addPass("solids", initial == Initial::Yes ? &S::moveSolids : &S::moveSolidsHalfWay, initial,
             solids_.moves() ? "" : solids_.count() > 0 ? "no solid moves" : "there are no solids");
     addPass("sort", &S::sort, initial);
-    addPass("neighbours", &S::findNeighbours, initial, keepsLists ? "" : noLists);
     addPass("rest", &S::findWhoRests, initial, !hasLocalSteps() ? allAlike : constants_.restSpeed > 0 ? "" : "nobody rests (time.rest_speed)");
     addPass("due", &S::findWhoIsDue, initial, hasLocalSteps() ? "" : allAlike);
+    addPass("neighbours", &S::findNeighbours, initial, keepsLists ? "" : noLists);
     carriesDensity(scene_) ? addPass("equation of state", &S::template onFluid<ApplyEquationOfState>, initial)
                            : addPass("density", pairPass<ComputeDensity<K>>(), initial);
     addPass("walls", wallPass<K>(), initial, whyNoWallPressure());

@@ -18,6 +18,7 @@ namespace spindrift::LANES {
 // One particle at a time walks the rows of cells: no boxes, no lists.
 struct Boxes { template <class... A> void compute(A&&...) {} };
 struct NeighbourLists {
+    template <class... A> void forget(A&&...) {}
     template <class... A> void build(A&&...) {}
     ClusterList* data() { return nullptr; }
     int64_t bytes() const { return 0; }

@@ -277,21 +277,26 @@ private:
     void sort() {
         if (nothingMovedFar()) return;
         fluid_.sort(grid_);
-        if (hasLocalSteps()) onFluid<ApplyEquationOfState>();   // of those who aren't due
-        if (!solids_.moves()) return;
-        walls_.sort(grid_);
-        solids_.placeWalls(view());   // all but their places, which the sort took along
-        wallBoxes_.compute(device_, walls_.view());
-    }
-    void findNeighbours() {
-        if (nothingMovedFar()) return;
-        const float reach = supportRadius(scene_) + skin();
         boxes_.compute(device_, fluid_.view());
-        fluidNearFluid_.build(device_, grid_, reach, boxes_, fluid_.view(), boxes_, fluid_.cellStart(), pairsOnce());
-        wallsNearFluid_.build(device_, grid_, reach, boxes_, fluid_.view(), wallBoxes_, walls_.cellStart());
-        if (wallsCarryPressure())
-            fluidNearWalls_.build(device_, grid_, reach, wallBoxes_, walls_.view(), boxes_, fluid_.cellStart());
+        if (hasLocalSteps()) onFluid<ApplyEquationOfState>();   // of those who aren't due
+        if (solids_.moves()) {
+            walls_.sort(grid_);
+            solids_.placeWalls(view());   // all but their places, which the sort took along
+            wallBoxes_.compute(device_, walls_.view());
+        }
+        for (NeighbourLists* lists : {&fluidNearFluid_, &wallsNearFluid_}) lists->forget(fluid_.view());
+        fluidNearWalls_.forget(walls_.view());
         travel_ = 0;
+    }
+    // Of those who are looked at now; forces on solids may be asked for at any time.
+    void findNeighbours() {
+        const View v = view();
+        const float reach = supportRadius(scene_) + skin();
+        fluidNearFluid_.build(device_, grid_, reach, boxes_, v.fluid.due, boxes_, fluid_.cellStart(), pairsOnce());
+        wallsNearFluid_.build(device_, grid_, reach, boxes_, v.fluid.due, wallBoxes_, walls_.cellStart());
+        if (!wallsCarryPressure()) return;
+        const uint8_t* due = solids_.count() > 0 ? nullptr : v.walls.due;
+        fluidNearWalls_.build(device_, grid_, reach, wallBoxes_, due, boxes_, fluid_.cellStart());
     }
     template <bool volume> void findExtremes() {
         device_.reduce(fluid_.slots(), FindExtremes<volume>{fluid_.view(), constants_.restDensity}, extremes_.data());
@@ -351,7 +356,8 @@ private:
     void weighWalls() {
         walls_.sort(grid_);
         wallBoxes_.compute(device_, walls_.view());
-        wallsNearWalls_.build(device_, grid_, supportRadius(scene_), wallBoxes_, walls_.view(), wallBoxes_, walls_.cellStart());
+        wallsNearWalls_.forget(walls_.view());
+        wallsNearWalls_.build(device_, grid_, supportRadius(scene_), wallBoxes_, nullptr, wallBoxes_, walls_.cellStart());
         withKernel(scene_.simulation.kernel, [&](auto kernel) {
             device_.forEach(walls_.slots(), ComputeWallMass<decltype(kernel)>{view()});
         });

@@ -68,7 +68,7 @@ TEST(TimeSeries, MoreColumnsStandBeforeThePasses) {
     TimeSeries series({{"gauge.height", "m"}, {"wall.pressure", "Pa"}});
     series.add({}, {{"sort", 4, 2}}, {0.25, NAN});
     const auto lines = linesOf(series.csv());
-    EXPECT_TRUE(lines[0].ends_with("max_speed [m/s],gauge.height [m],wall.pressure [Pa],sort [ms]")) << lines[0];
+    EXPECT_TRUE(lines[0].ends_with("max_speed [m/s],evaluations,gauge.height [m],wall.pressure [Pa],sort [ms]")) << lines[0];
     EXPECT_TRUE(lines[1].ends_with(",0.25,nan,2")) << lines[1];
 }
 
