@@ -132,13 +132,13 @@ private:
 
     // One step; then what is due: a look at the run's health, a sample, the progress bar.
     void advance() {
-        simulation_->stopAt(nextStop());
+        const double stop = nextStop();
+        simulation_->stopAt(stop);
         const auto start = std::chrono::steady_clock::now();
         simulation_->step();
         ++steps_, ++made_;
-        // The time is known from a measurement only, and the ends of run and frame depend on it.
-        const bool look = sampling_ || scene_.output.time > 0 || checkpointsByTime() || steps_ % HealthInterval == 0 ||
-                          steps_ == scene_.compute.steps;
+        const bool look = steps_ % HealthInterval == 0 || steps_ == scene_.compute.steps ||
+                          (stop < never && isReached(stop, simulation_->clock().time));
         if (look) simulation_->wait();
         stepSeconds_ +=
             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -195,16 +195,18 @@ private:
         }
     }
 
+    static constexpr double never = 1e300;
     // The next time at which the run is looked at or ends.
     double nextStop() const {
         const Output& output = scene_.output;
-        double stop = output.time > 0 ? asWritten(output.time) : 1e300;
+        double stop = output.time > 0 ? asWritten(output.time) : never;
         if (rows_) stop = std::min(stop, nextRow_);
         if (!output.frames.empty()) stop = std::min(stop, nextFrame_);
         return checkpointsByTime() ? std::min(stop, nextCheckpoint_) : stop;
     }
     // Two times that should be the same, but are sums of different steps, are.
-    bool reached(double time) const { return now_.time >= time * (1 - 1e-9); }
+    static bool isReached(double time, double now) { return now >= time * (1 - 1e-9); }
+    bool reached(double time) const { return isReached(time, now_.time); }
     double frameInterval() const { return 1 / double(scene_.output.fps); }
     double rowInterval() const { return scene_.output.sampleEvery > 0 ? asWritten(scene_.output.sampleEvery) : frameInterval(); }
     // Of the multiples of `every` the first one that is still ahead.

@@ -46,7 +46,7 @@ struct Case {
 
 Run runFor(const std::string& name, const Scene& scene, const RunState& state, double warmUp, double time) {
     const auto simulation = makeSimulation(scene, state);
-    while (simulation->measure().time < state.clock.time + warmUp) simulation->step();
+    while (simulation->clock().time < state.clock.time + warmUp) simulation->step();
     Run run;
     run.name = name;
     const Measurement first = run.end = simulation->measure();
@@ -54,10 +54,10 @@ Run runFor(const std::string& name, const Scene& scene, const RunState& state, d
         const double stop = first.time + std::min(time, frame / FramesPerSecond);
         simulation->stopAt(stop);
         const auto start = std::chrono::steady_clock::now();
-        for (; run.end.time < stop; run.end = simulation->measure())
-            simulation->step(std::max(1, run.end.dt > 0 ? int((stop - run.end.time) / run.end.dt / 2) : 1));   // a measurement costs something
+        while (simulation->clock().time < stop) simulation->step();
         const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         run.seconds += seconds;
+        run.end = simulation->measure();
         run.time.push_back(run.end.time), run.frameTime.push_back(1000 * seconds);
     }
     run.steps = run.end.steps - first.steps;

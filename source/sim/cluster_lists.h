@@ -75,7 +75,7 @@ public:
         ends_.resize(entries_.size());
         for (size_t p = 0; p < ends_.size(); ++p) ends_[p] = uint32_t(std::min(clusters, (p + 1) * piece_));
     }
-    // Makes the lists that are wanted and not there: of all clusters, or with `due` of those of which it doesn't say NotDue. Boxes and cells are those
+    // Makes the lists that are wanted and not there: of all clusters, or with `due` of those of which it says more than NotDue. Boxes and cells are those
     // of when the last ones were forgotten.
     void build(Omp& device, const Grid& grid, float reach, const ClusterBoxes& own, const uint8_t* due,
                const ClusterBoxes& other, const int* otherCellStart, bool once = false) {
@@ -103,7 +103,7 @@ private:
         const int* cellStart;
         bool once;
         float period[3];   // m, 0 where there is none
-        bool wants(int cluster) const { return !due || due[cluster] != NotDue; }
+        bool wants(int cluster) const { return !due || due[cluster] > NotDue; }
     };
     static float periodOf(int wraps, int cells, float perMetre) { return wraps ? float(cells) / perMetre : 0; }
     static size_t cellCount(const Grid& g) { return size_t(g.cells.x) * g.cells.y * g.cells.z; }

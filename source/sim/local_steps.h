@@ -125,9 +125,9 @@ struct FindDueClusters {
     using Index = int;
     View v;
     HD void operator()(int cluster) const {
-        bool due = false;
-        for (int i = cluster * clusterSize; i < (cluster + 1) * clusterSize; ++i) due = due || isDue(load(v.fluid.level, i), *v.state);
-        v.fluid.due[cluster] = due ? Due : NotDue;
+        real shortest = resting;
+        for (int i = cluster * clusterSize; i < (cluster + 1) * clusterSize; ++i) shortest = max(shortest, load(v.fluid.level, i));
+        v.fluid.due[cluster] = isDue(shortest, *v.state) ? Due : shortest < 0 ? Resting : NotDue;
     }
 };
 struct FindDueBlocks {
@@ -195,6 +195,7 @@ struct KickDue {
     using R = Real<Quad>;
     View v;
     HD void operator()(Quad i) const {
+        if (!isDue(v.fluid, i)) return;
         const R before = load(v.fluid.level, i), one = 1, now = real(v.state->level);
         const Vector<R> u = load(v.fluid.velocity, i), a = load(v.fluid.acceleration, i);
         const R pull = squareRoot(dot(a, a)) + R(little), speed = squareRoot(dot(u, u)) + R(little);

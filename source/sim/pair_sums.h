@@ -66,7 +66,7 @@ private:
     static constexpr int mostBlocks = 32;
 
     // Clusters that are due or may have a neighbour that is.
-    static bool isNear(const Particles& p, int cluster) { return !p.due || p.due[cluster] != NotDue; }
+    static bool isNear(const Particles& p, int cluster) { return !p.due || p.due[cluster] > NotDue; }
 
     // What blocks [0, b] have for clusters [first, last) of block b.
     template <int numbers> void addUp(int b, int block, int first, int last, float* field) const {

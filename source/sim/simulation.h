@@ -75,7 +75,9 @@ public:
     // copy. Returns the range of the fluid's values. Boundary value: 1 of a solid, 0 of the domain's walls.
     virtual Range writeVertices(VertexMemory out, ColorBy, int walls) = 0;
 
+    // What it comes to, which takes a look at all particles; and the time alone.
     virtual Measurement measure() = 0;
+    virtual StepState clock() = 0;
     // All fluid particles, in the order of their ids; one of them by its id in [0, fluidCount).
     virtual std::vector<Particle> particles() = 0;
     virtual Particle particle(int id) = 0;

@@ -96,6 +96,11 @@ public:
     }
 
     Measurement measure() override;
+    StepState clock() override {
+        StepState clock;
+        device_.download(&clock, clock_.data(), 1);
+        return clock;
+    }
     RunState state() override {
         RunState s;
         s.particles = {fluid_.positions(fluidCount_, 0), fluid_.velocities(fluidCount_, 0), wallsAtHome_, {}, solidSizes_};
@@ -214,11 +219,6 @@ private:
     }
     // There is nothing to be done but to let time pass. (A GPU would have to be asked.)
     bool allRest() { return !Device::recordsSteps && hasLocalSteps() && clock().allRest && stir_.radius <= 0 && !solids_.moves(); }
-    StepState clock() {
-        StepState clock;
-        device_.download(&clock, clock_.data(), 1);
-        return clock;
-    }
     // One recording for each side of the particles' buffers; walls are sorted only when they move.
     void stepFromRecording() {
         auto& recording = recordings_[2 * walls_.side() + fluid_.side()];

@@ -41,9 +41,9 @@ struct Particles {
 
 // The level of who rests.
 inline constexpr real resting = -1;
-// Of clusters. Near: not due itself, but maybe a neighbour of who is. Watched: near and resting, so that its density goes with its neighbours' places
+// Of clusters. Resting: all of it. Near: not due itself, but maybe a neighbour of who is. Watched: near and resting, so that its density goes with its neighbours' places
 // as a wall's would; with a pressure of its own it would push them without an end.
-enum : uint8_t { NotDue, NearDue, Watched, Due };
+enum : uint8_t { Resting, NotDue, NearDue, Watched, Due };
 
 template <uint8_t from = Due, class I> HD inline bool isDue(const Particles& p, I i) { return !p.due || p.due[firstOf(i) / clusterSize] >= from; }
 
