@@ -312,7 +312,8 @@ private:
         device_.forEach(int(localSteps_.blocks()), RestBlocks{view()});
     }
     void findWhoIsDue() {
-        if (allDue()) return;
+        allDue_ = !Device::recordsSteps && clock().allDue;   // (a recording can't look)
+        if (allDue_) return;
         device_.forEach(fluid_.slots() / clusterSize, FindDueClusters{view()});
         device_.forEach(int(localSteps_.blocks()), FindDueBlocks{view()});
         device_.forEach(walls_.slots() / clusterSize, ForgetDue{walls_.view()});
@@ -325,8 +326,6 @@ private:
         if constexpr (keepsLists)
             travel_ += clock_.data()->dt * std::max({clock_.data()->speed, double(length(stir_.velocity)), double(solids_.largestSpeed())});
     }
-    // Flags are needless then. (A recording can't look.)
-    bool allDue() { return !Device::recordsSteps && clock().allDue; }
     void wake() {
         if (!hasLocalSteps()) return;
         localSteps_.wake();
@@ -374,7 +373,7 @@ private:
                {fluidNearWalls_.data(), fluid_.cellStart(), fluid_.view().position},
                {wallsNearWalls_.data(), walls_.cellStart(), walls_.view().position},
                grid_, constants_, clock_.data(), localSteps_.view()};
-        if (allDue()) v.fluid.due = v.walls.due = nullptr;
+        if (allDue_) v.fluid.due = v.walls.due = nullptr;
         v.c.stirCenter = toVector(stir_.center - scene_.domain.min);
         v.c.stirVelocity = toVector(stir_.velocity);
         v.c.stirRadius = stir_.radius;
@@ -427,6 +426,7 @@ private:
     Buffer<StepState, Device> clock_{device_};
     Buffer<Extremes, Device> extremes_{device_};
     LocalSteps<Device> localSteps_{device_};
+    bool allDue_ = false;       // at this moment: flags are needless then
     Buffer<Vertex, Device> staging_{device_};   // for vertices that the host is to have
     bool measureNext_ = true;
     typename Device::Recording recordings_[4];

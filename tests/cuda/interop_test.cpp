@@ -42,7 +42,7 @@ public:
     int fluidCount() const override { return s_.fluidCount(); }
     int wallCount() const override { return s_.wallCount(); }
     int solidParticleCount() const override { return s_.solidParticleCount(); }
-    StepState clock() override { return inner_->clock(); }
+    StepState clock() override { return s_.clock(); }
     Measurement measure() override { return s_.measure(); }
     std::vector<Particle> particles() override { return s_.particles(); }
     Particle particle(int id) override { return s_.particle(id); }
