@@ -1,7 +1,7 @@
 #include "app/bench.h"
 
 #include "app/bench_baseline.h"
-#include "app/gpu_bench.h"
+#include "app/frame_bench.h"
 #include "app/scene_choice.h"
 #include "core/error.h"
 #include "measure/output_file.h"

@@ -3,6 +3,7 @@
 #include "app/bench.h"
 #include "app/compare.h"
 #include "app/error_bench.h"
+#include "app/frame_bench.h"
 #include "app/local_bench.h"
 #include "app/explain.h"
 #include "app/headless.h"
@@ -220,7 +221,7 @@ CLI::App* addCompare(CLI::App& app, CompareOptions& options) {
     return command;
 }
 
-CLI::App* addBench(CLI::App& app, BenchOptions& options, bool& error, ErrorBenchOptions& errorOptions, bool& local) {
+CLI::App* addBench(CLI::App& app, BenchOptions& options, bool& error, ErrorBenchOptions& errorOptions, bool& local, bool& frames) {
     CLI::App* command = app.add_subcommand("bench", "times whole steps and their passes");
     command->add_option("--only", options.only, "cases whose name contains this")->type_name("TEXT");
     command->add_option("--json", options.json, "writes the figures as JSON")->type_name("FILE");
@@ -234,6 +235,7 @@ CLI::App* addBench(CLI::App& app, BenchOptions& options, bool& error, ErrorBench
         ->check(CLI::PositiveNumber);
     command->add_flag("--error", error, "run time against error instead, of flows with known answers; half an hour");
     command->add_flag("--local", local, "local steps against the step of all instead; half an hour");
+    command->add_flag("--frames", frames, "pictures of up to 200 thousand particles instead, drawn off screen");
     command->add_option("--case", errorOptions.cases, "with --error: only this flow; may be repeated")->type_name("NAME")
         ->allow_extra_args(false);
     command->add_flag("--coarsest", errorOptions.coarsest, "with --error: only the coarsest resolution, minutes");
@@ -290,9 +292,9 @@ int runCommandLine(int argc, const char* const* argv) {
     const CLI::App* explainCommand = addExplain(app, explained);
     const CLI::App* compareCommand = addCompare(app, comparison);
     BenchOptions benchmark;
-    bool benchesError = false, benchesLocal = false;
+    bool benchesError = false, benchesLocal = false, benchesFrames = false;
     ErrorBenchOptions errorBenchmark;
-    const CLI::App* benchCommand = addBench(app, benchmark, benchesError, errorBenchmark, benchesLocal);
+    const CLI::App* benchCommand = addBench(app, benchmark, benchesError, errorBenchmark, benchesLocal, benchesFrames);
     ValidateOptions validation;
     const CLI::App* validateCommand = addValidate(app, validation);
     StressOptions stressOptions;
@@ -311,6 +313,7 @@ int runCommandLine(int argc, const char* const* argv) {
     if (*runCommand) return runScene(run);
     if (*explainCommand) return explain(chooseScene(explained.scene, explained.choices));
     if (*compareCommand) return compare(comparison);
+    if (*benchCommand && benchesFrames) return benchFrames();
     if (*benchCommand && benchesLocal) return benchLocalSteps({benchmark.only, errorBenchmark.out});
     if (*benchCommand) return benchesError ? benchError(errorBenchmark) : bench(benchmark);
     if (*stressCommand) return stress(stressOptions);

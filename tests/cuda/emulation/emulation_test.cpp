@@ -1,5 +1,5 @@
 // What only an emulated GPU can show: failing drivers, lost devices, the order of threads, and what is done how often.
-#include "app/gpu_bench.h"
+#include "app/frame_bench.h"
 #include "core/error.h"
 #include "cuda/gpu.h"
 #include "emulation.h"

@@ -1,12 +1,16 @@
-#include "app/gpu_bench.h"
+#include "app/frame_bench.h"
 
 #include "app/frame.h"
+#include "app/scene_choice.h"
+#include "core/error.h"
 #include "render/egl_context.h"
+#include "render/gl.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <functional>
 #include <vector>
 
@@ -51,6 +55,24 @@ nlohmann::json benchFrameAndSwitch(const Scene& wanted) {
     fmt::print("{:70} {:9} {:18.1f} ms to the CPU, {:.1f} ms back\n", "change of backend", simulation->fluidCount(), there, back);
     return {{"particles", simulation->fluidCount()}, {"frame_ms", write}, {"vertices", way},
             {"switch_to_cpu_ms", there}, {"switch_back_ms", back}};
+}
+
+int benchFrames() {
+    fmt::print("| particles | samples | vertices, ms | draw, ms | read back, ms |\n|---|---|---|---|---|\n");
+    for (const char* spacing : {"0.02", "0.0143", "0.009"})
+        for (int samples : {1, 4}) {
+            const Scene scene = chooseScene("dam_break", {{"bench", "simulation.spacing", spacing}, {"bench", "compute.backend", "cpu"}});
+            EglContext context(-1);
+            const auto simulation = makeSimulation(scene);
+            while (simulation->clock().time < 0.1) simulation->step();
+            Frame frame(1280, 800, samples);
+            const double vertices = medianMs(20, [&] { frame.update(*simulation, scene); });
+            const double drawn = medianMs(20, [&] { frame.draw(scene), glFinish(); });
+            const double read = medianMs(20, [&] { frame.image(); });
+            fmt::print("| {} | {} | {:.2f} | {:.1f} | {:.1f} |\n", simulation->fluidCount(), samples, vertices, drawn, read);
+            std::fflush(stdout);
+        }
+    return int(Exit::Ok);
 }
 
 }  // namespace spindrift
