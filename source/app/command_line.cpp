@@ -221,7 +221,20 @@ CLI::App* addCompare(CLI::App& app, CompareOptions& options) {
     return command;
 }
 
-CLI::App* addBench(CLI::App& app, BenchOptions& options, bool& error, ErrorBenchOptions& errorOptions, bool& local, bool& frames) {
+struct BenchChoice {
+    BenchOptions steps;
+    ErrorBenchOptions error;
+    bool byError = false, byLocalSteps = false, byFrames = false;
+};
+
+int runBench(const BenchChoice& choice) {
+    if (choice.byFrames) return benchFrames();
+    if (choice.byLocalSteps) return benchLocalSteps({choice.steps.only, choice.error.out});
+    return choice.byError ? benchError(choice.error) : bench(choice.steps);
+}
+
+CLI::App* addBench(CLI::App& app, BenchChoice& choice) {
+    BenchOptions& options = choice.steps;
     CLI::App* command = app.add_subcommand("bench", "times whole steps and their passes");
     command->add_option("--only", options.only, "cases whose name contains this")->type_name("TEXT");
     command->add_option("--json", options.json, "writes the figures as JSON")->type_name("FILE");
@@ -233,13 +246,13 @@ CLI::App* addBench(CLI::App& app, BenchOptions& options, bool& error, ErrorBench
     command->add_flag("--gpu", options.gpu, "the GPU's cases instead: up to 100 million particles, frames, switching");
     command->add_option("--most", options.most, "leaves out the GPU's cases with more particles")->type_name("N")
         ->check(CLI::PositiveNumber);
-    command->add_flag("--error", error, "run time against error instead, of flows with known answers; half an hour");
-    command->add_flag("--local", local, "local steps against the step of all instead; half an hour");
-    command->add_flag("--frames", frames, "pictures of up to 200 thousand particles instead, drawn off screen");
-    command->add_option("--case", errorOptions.cases, "with --error: only this flow; may be repeated")->type_name("NAME")
+    command->add_flag("--error", choice.byError, "run time against error instead, of flows with known answers; half an hour");
+    command->add_flag("--local", choice.byLocalSteps, "local steps against the step of all instead; half an hour");
+    command->add_flag("--frames", choice.byFrames, "pictures of up to 200 thousand particles instead, drawn off screen");
+    command->add_option("--case", choice.error.cases, "with --error: only this flow; may be repeated")->type_name("NAME")
         ->allow_extra_args(false);
-    command->add_flag("--coarsest", errorOptions.coarsest, "with --error: only the coarsest resolution, minutes");
-    command->add_option("--out", errorOptions.out, "with --error and --local: folder for tables and charts")->type_name("FOLDER");
+    command->add_flag("--coarsest", choice.error.coarsest, "with --error: only the coarsest resolution, minutes");
+    command->add_option("--out", choice.error.out, "with --error and --local: folder for tables and charts")->type_name("FOLDER");
     return command;
 }
 
@@ -291,10 +304,8 @@ int runCommandLine(int argc, const char* const* argv) {
     RunOptions explained;
     const CLI::App* explainCommand = addExplain(app, explained);
     const CLI::App* compareCommand = addCompare(app, comparison);
-    BenchOptions benchmark;
-    bool benchesError = false, benchesLocal = false, benchesFrames = false;
-    ErrorBenchOptions errorBenchmark;
-    const CLI::App* benchCommand = addBench(app, benchmark, benchesError, errorBenchmark, benchesLocal, benchesFrames);
+    BenchChoice benchmark;
+    const CLI::App* benchCommand = addBench(app, benchmark);
     ValidateOptions validation;
     const CLI::App* validateCommand = addValidate(app, validation);
     StressOptions stressOptions;
@@ -313,9 +324,7 @@ int runCommandLine(int argc, const char* const* argv) {
     if (*runCommand) return runScene(run);
     if (*explainCommand) return explain(chooseScene(explained.scene, explained.choices));
     if (*compareCommand) return compare(comparison);
-    if (*benchCommand && benchesFrames) return benchFrames();
-    if (*benchCommand && benchesLocal) return benchLocalSteps({benchmark.only, errorBenchmark.out});
-    if (*benchCommand) return benchesError ? benchError(errorBenchmark) : bench(benchmark);
+    if (*benchCommand) return runBench(benchmark);
     if (*stressCommand) return stress(stressOptions);
     if (*validateCommand) return validate(validation);
     if (*schemaCommand) writeText("-", jsonSchema());

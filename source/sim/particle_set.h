@@ -110,8 +110,10 @@ public:
     void stepLocally(bool locally) {
         stepsLocally_ = locally;
         resize(slots_);
-        if (locally && sortedId_.size() > 0) return resizeSorted(slots_);   // a recorded sort can't make room
-        if (locally) return;
+        if (locally) {
+            if (sortedId_.size() > 0) resizeSorted(slots_);   // a recorded sort can't make room
+            return;
+        }
         for (auto* b : {&level_, &sortedLevel_, &sortedAcceleration_, &sortedDensityRate_}) b->release();
         due_.release();
     }
