@@ -247,7 +247,7 @@ CLI::App* addBench(CLI::App& app, BenchChoice& choice) {
     command->add_option("--most", options.most, "leaves out the GPU's cases with more particles")->type_name("N")
         ->check(CLI::PositiveNumber);
     command->add_flag("--error", choice.byError, "run time against error instead, of flows with known answers; half an hour");
-    command->add_flag("--local", choice.byLocalSteps, "local steps against the step of all instead; half an hour");
+    command->add_flag("--local", choice.byLocalSteps, "local steps against the step of all instead; an hour");
     command->add_flag("--frames", choice.byFrames, "pictures of up to 200 thousand particles instead, drawn off screen");
     command->add_option("--case", choice.error.cases, "with --error: only this flow; may be repeated")->type_name("NAME")
         ->allow_extra_args(false);

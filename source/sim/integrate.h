@@ -28,7 +28,7 @@ template <unsigned what> struct Integrate {
     using R = Real<Quad>;
     View v;
     HD void operator()(Quad i) const {
-        if (v.fluid.due && v.fluid.due[firstOf(i) / clusterSize] == Resting) return;
+        if (!isDue<NotDue>(v.fluid, i)) return;   // its cluster rests
         const R dt = real(v.state->dt), half = real(0.5) * real(v.state->dt), way = what & HalfDrift ? half : dt;
         constexpr bool resumesVelocity = (what & Resume) && (what & (Kick | HalfKick));
         Vector<R> u = load(resumesVelocity ? v.fluid.keptVelocity : v.fluid.velocity, i);
