@@ -165,21 +165,6 @@ TEST(Rest, ComesToAPoolAndEndsWhenItIsDisturbed) {
     EXPECT_GT(simulation->measure().centerOfMass.x, m.centerOfMass.x + 0.001);
 }
 
-// While the mouse moves slowly in one corner for ever, the rest sleeps longer and longer.
-TEST(Rest, NapsGrowWhileNothingComesOfThem) {
-    Scene scene = pool();
-    const auto simulation = makeSimulation(scene);
-    for (int k = 0; k < 400 && evaluationsOf(*simulation, 50) > 0; ++k) {}
-    simulation->stir({{0.06f, 0.1f, float(simulation->particle(0).position.z)}, 0.04f, {0.012f, 0, 0}});
-    simulation->step(400);
-    const double first = evaluationsOf(*simulation, 2000);
-    simulation->step(8000);
-    const double later = evaluationsOf(*simulation, 2000);
-    std::printf("awake beside a stirred corner: %.3f, %.3f after 10,000 steps\n", first, later);
-    EXPECT_GT(later, 0.005);
-    EXPECT_LT(later, 0.5 * first);
-}
-
 TEST(Rest, IsNotForbiddenToBeForbidden) {
     Scene scene = pool();
     scene.time.restSpeed = 0;

@@ -1,0 +1,88 @@
+// The rule by which blocks of fluid rest (RestBlocks), by itself: what the neighbours do is given.
+#define SPINDRIFT_REAL double
+#define LANES napsTest
+#include "sim/local_steps.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <vector>
+
+namespace spindrift {
+namespace {
+
+using namespace napsTest;
+
+// Three blocks in a row, a particle in each; 1 m/s is the speed of sound and of what rests.
+struct Row {
+    std::array<int, 3> ids{0, 1, 2}, calm{}, nap{};
+    std::array<int, 4> cellStart{0, 1, 2, 3};
+    std::array<double, 3> speed2{}, level{};
+    alignas(32) std::array<double, 12> velocity{};
+    StepState clock;
+    napsTest::View v{};
+
+    Row() {
+        v.fluid.slots = 3, v.fluid.id = ids.data(), v.fluid.level = {level.data()}, v.fluid.velocity = {velocity.data()};
+        v.fluidNearFluid.cellStart = cellStart.data();
+        v.grid.cells = {3, 1, 1};
+        v.blocks = {{3, 1, 1}, {1, 1, 1}, speed2.data(), calm.data(), nap.data(), nullptr, nullptr};
+        v.c.restSpeed = v.c.soundSpeed = 1;
+        v.state = &clock;
+        for (int b = 0; b < 3; ++b) WakeBlocks{v.blocks}(b);
+    }
+    // One decision with blocks as fast as this, m/s; who sleeps is still.
+    void decide(std::array<double, 3> speed) {
+        for (int b = 0; b < 3; ++b) speed2[b] = sleeps(b) ? -1 : speed[b] * speed[b];
+        for (int b = 0; b < 3; ++b) RestBlocks{v}(b);
+    }
+    bool sleeps(int b) const { return level[b] < 0; }
+    // How many decisions the last block sleeps for.
+    int nextNap(std::array<double, 3> speed, int most = 2 * longestNap) {
+        while (!sleeps(2)) decide(speed);
+        int decisions = 0;
+        for (; sleeps(2) && decisions < most; ++decisions) decide(speed);
+        return decisions;
+    }
+};
+
+TEST(Naps, BeginWhenAllAroundHasBeenCalmForLong) {
+    Row row;
+    for (int k = 1; k < calmDecisions; ++k) row.decide({2, 0.9, 0.9});
+    EXPECT_FALSE(row.sleeps(2));
+    row.decide({2, 0.9, 0.9});
+    EXPECT_FALSE(row.sleeps(0));
+    EXPECT_FALSE(row.sleeps(1)) << "its neighbour is fast";
+    EXPECT_TRUE(row.sleeps(2));
+}
+
+// Beside somebody who neither rests nor disturbs.
+TEST(Naps, GrowWhileNothingComesOfThem) {
+    Row row;
+    const std::array<double, 3> speed{2, 0.9, 0.9};
+    int expected = firstNap;
+    for (int k = 0; k < 9; ++k, expected = std::min(2 * expected, longestNap))
+        EXPECT_EQ(row.nextNap(speed), expected - calmDecisions + 1) << k;
+    EXPECT_EQ(expected, longestNap);
+}
+
+TEST(Naps, EndWhenSomethingFastComesNearAndAreShortAgain) {
+    Row row;
+    const std::array<double, 3> calm{2, 0.9, 0.9};
+    for (int k = 0; k < 4; ++k) row.nextNap(calm);
+    while (!row.sleeps(2)) row.decide(calm);
+    row.decide({2, 3.9, 0});
+    EXPECT_TRUE(row.sleeps(2)) << "slower than what wakes";
+    row.decide({2, 4.1, 0});
+    EXPECT_FALSE(row.sleeps(2));
+    EXPECT_EQ(row.nextNap(calm), firstNap - calmDecisions + 1);
+}
+
+// Nobody is awake: nobody wakes.
+TEST(Naps, LastForEverWhereAllRest) {
+    Row row;
+    EXPECT_EQ(row.nextNap({0.5, 0.5, 0.5}, longestNap + 1), longestNap + 1);
+}
+
+}  // namespace
+}  // namespace spindrift
