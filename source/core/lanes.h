@@ -10,14 +10,8 @@
 // Index kinds: `Group` (neighbour passes: a few particles i, each against four neighbours j at once),
 // `Four` (the j side), `Quad` (four particles, no neighbours), `int` (one particle). Without SIMD all are int.
 //
-// This file and all that includes it are compiled once per instruction set, each time in another namespace,
-// so the guard toggles (Highway's foreach_target convention); without Highway it is an ordinary guard.
-#if defined(SPINDRIFT_CORE_LANES_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef SPINDRIFT_CORE_LANES_H
-#undef SPINDRIFT_CORE_LANES_H
-#else
-#define SPINDRIFT_CORE_LANES_H
-#endif
+// This file and all that includes it are compiled once per instruction set, each time in another namespace (LANES).
+#pragma once
 
 #ifdef SPINDRIFT_SIMD
 #include "core/lanes_simd.h"
@@ -94,5 +88,3 @@ HD inline void store(VectorField f, int i, Vector<real> value) {
 #endif
 
 }  // namespace spindrift::LANES
-
-#endif

@@ -3,12 +3,7 @@
 // four particles of one neighbour cluster j, repeated for every i:
 //     i: a a a a b b b b c c c c d d d d        j: p q r s p q r s p q r s p q r s
 // Two thirds fewer pairs miss than with 16 particles against one neighbour, because a cluster is compact.
-#if defined(SPINDRIFT_CORE_LANES_SIMD_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef SPINDRIFT_CORE_LANES_SIMD_H
-#undef SPINDRIFT_CORE_LANES_SIMD_H
-#else
-#define SPINDRIFT_CORE_LANES_SIMD_H
-#endif
+#pragma once
 
 #include <hwy/highway.h>
 
@@ -16,10 +11,6 @@
 #include <cstddef>
 
 // HD: part of a pass, inlined into it. LANE_CALL: the same for lambdas. HD_OUT: also called from plain host code.
-#undef HD
-#undef HD_OUT
-#undef LANE_CALL
-#undef LANES
 #define HD __attribute__((always_inline))
 #define HD_OUT
 #define LANE_CALL HWY_ATTR __attribute__((always_inline))
@@ -151,5 +142,3 @@ template <class Reduction, class Value> void sumRange(const Reduction& reduction
 }
 
 }  // namespace spindrift::LANES
-
-#endif

@@ -1,12 +1,7 @@
 // Neighbour lists for SIMD lanes: for each cluster of four particles the clusters that may hold neighbours. Rows of
 // cells narrow the choice, bounding boxes decide. Built once a step or less often, read by every neighbour pass. Of a set with itself they may hold
 // each pair once, in the list of the earlier cluster, and no cluster with itself.
-#if defined(SPINDRIFT_SIM_CLUSTER_LISTS_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef SPINDRIFT_SIM_CLUSTER_LISTS_H
-#undef SPINDRIFT_SIM_CLUSTER_LISTS_H
-#else
-#define SPINDRIFT_SIM_CLUSTER_LISTS_H
-#endif
+#pragma once
 
 #include "core/error.h"
 #include "device/omp.h"
@@ -261,5 +256,3 @@ private:
 };
 
 }  // namespace spindrift::LANES
-
-#endif

@@ -1,10 +1,5 @@
 // Scene -> the constants of a step, and the grid of cells.
-#if defined(SPINDRIFT_SIM_CONSTANTS_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef SPINDRIFT_SIM_CONSTANTS_H
-#undef SPINDRIFT_SIM_CONSTANTS_H
-#else
-#define SPINDRIFT_SIM_CONSTANTS_H
-#endif
+#pragma once
 
 #include "scene/motion.h"
 #include "sim/kernels.h"
@@ -162,5 +157,3 @@ inline Grid makeGrid(const Scene& s, size_t particles) {
 }
 
 }  // namespace spindrift::LANES
-
-#endif

@@ -1,10 +1,5 @@
 // The passes that move particles in time.
-#if defined(SPINDRIFT_SIM_INTEGRATE_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef SPINDRIFT_SIM_INTEGRATE_H
-#undef SPINDRIFT_SIM_INTEGRATE_H
-#else
-#define SPINDRIFT_SIM_INTEGRATE_H
-#endif
+#pragma once
 
 #include "sim/passes.h"
 
@@ -92,5 +87,3 @@ template <unsigned what> struct Integrate {
 };
 
 }  // namespace spindrift::LANES
-
-#endif

@@ -1,12 +1,7 @@
 // Smoothing kernels as functions of q = |x| / R, R the support radius, in d dimensions. Each vanishes for q >= 1 by
 // itself, so that lanes whose neighbour is too far need no mask.
 //     W = norm(d) / R^d * w(q)        grad W = gradient norm(d) / R^(d+2) * g(q) * x
-#if defined(SPINDRIFT_SIM_KERNELS_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef SPINDRIFT_SIM_KERNELS_H
-#undef SPINDRIFT_SIM_KERNELS_H
-#else
-#define SPINDRIFT_SIM_KERNELS_H
-#endif
+#pragma once
 
 #include "core/lanes.h"
 #include "scene/scene.h"
@@ -107,5 +102,3 @@ template <class F> auto withKernel(Kernel kernel, F f) {
 }
 
 }  // namespace spindrift::LANES
-
-#endif

@@ -2,12 +2,7 @@
 // steps, as its speed and acceleration ask for, and forces are evaluated only where a particle is due. A particle's velocity changes where its
 // own step begins, so that in between it is where its straight line leads: neighbours see nothing extrapolated. Blocks of cells whose
 // surroundings have been calm for long rest: they are neither evaluated nor moved until something comes near.
-#if defined(SPINDRIFT_SIM_LOCAL_STEPS_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef SPINDRIFT_SIM_LOCAL_STEPS_H
-#undef SPINDRIFT_SIM_LOCAL_STEPS_H
-#else
-#define SPINDRIFT_SIM_LOCAL_STEPS_H
-#endif
+#pragma once
 
 #include "device/buffer.h"
 #include "sim/passes.h"
@@ -299,5 +294,3 @@ private:
 };
 
 }  // namespace spindrift::LANES
-
-#endif

@@ -4,6 +4,8 @@
 #include "device/cuda_devices.h"
 #include "scene/check.h"
 
+#include <hwy/targets.h>
+
 #include <algorithm>
 #include <new>
 #include <thread>
@@ -43,6 +45,17 @@ static bool runsOnGpu(const Scene& scene, ParticleCount count) {
         return false;
     }
     return true;
+}
+
+std::unique_ptr<Simulation> makeSimdSimulation(const Scene& scene, const RunState& state, int threads) {
+    struct InstructionSet { Simd name; int64_t target; decltype(&makeSseSimulation) make; };
+    static constexpr InstructionSet sets[] = {{Simd::Avx512, HWY_AVX3, makeAvx512Simulation},
+                                              {Simd::Avx2, HWY_AVX2, makeAvx2Simulation},
+                                              {Simd::Sse, HWY_SSSE3, makeSseSimulation}};
+    const int64_t machine = hwy::SupportedTargets();
+    for (const InstructionSet& set : sets)
+        if ((scene.compute.simd == Simd::Auto || scene.compute.simd == set.name) && (machine & set.target)) return set.make(scene, state, threads);
+    throw Error(Exit::NoDevice, "compute.simd: this processor does not have that instruction set; use auto");
 }
 
 static std::unique_ptr<Simulation> build(const Scene& scene, const RunState* state) {

@@ -2,12 +2,7 @@
 // radius R, the particle itself included when it is of the same set; with SIMD also with some that are further
 // away, which kernels turn into zeros. The first pass of a step, `Prune`, notes for the later ones, `Pruned`, which
 // clusters are worth a look; lists that are read but once a step are not pruned, `All`.
-#if defined(SPINDRIFT_SIM_NEIGHBOURS_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef SPINDRIFT_SIM_NEIGHBOURS_H
-#undef SPINDRIFT_SIM_NEIGHBOURS_H
-#else
-#define SPINDRIFT_SIM_NEIGHBOURS_H
-#endif
+#pragma once
 
 #include "sim/view.h"
 
@@ -96,5 +91,3 @@ HD inline void forNeighbours(const View& v, const Neighbourhood& near, int, Vect
 #endif
 
 }  // namespace spindrift::LANES
-
-#endif

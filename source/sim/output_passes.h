@@ -1,10 +1,5 @@
 // What leaves the device: vertices for the screen, sums for the measurements.
-#if defined(SPINDRIFT_SIM_OUTPUT_PASSES_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef SPINDRIFT_SIM_OUTPUT_PASSES_H
-#undef SPINDRIFT_SIM_OUTPUT_PASSES_H
-#else
-#define SPINDRIFT_SIM_OUTPUT_PASSES_H
-#endif
+#pragma once
 
 #include "core/vertex.h"
 #include "sim/view.h"
@@ -106,5 +101,3 @@ struct SumUp {
 };
 
 }  // namespace spindrift::LANES
-
-#endif

@@ -2,12 +2,7 @@
 // Blocks of clusters are summed by one thread each, into memory of their own that reaches from the block's first cluster to the last one
 // that its lists know; then each particle adds up what the blocks have for it, in their order. Blocks follow from the number of particles:
 // the sums don't depend on the number of threads.
-#if defined(SPINDRIFT_SIM_PAIR_SUMS_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef SPINDRIFT_SIM_PAIR_SUMS_H
-#undef SPINDRIFT_SIM_PAIR_SUMS_H
-#else
-#define SPINDRIFT_SIM_PAIR_SUMS_H
-#endif
+#pragma once
 
 #include "sim/cluster_lists.h"
 #include "sim/neighbours.h"
@@ -105,5 +100,3 @@ private:
 };
 
 }  // namespace spindrift::LANES
-
-#endif

@@ -1,10 +1,5 @@
 // Owns the buffers of one kind of particles and keeps them sorted by cell.
-#if defined(SPINDRIFT_SIM_PARTICLE_SET_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef SPINDRIFT_SIM_PARTICLE_SET_H
-#undef SPINDRIFT_SIM_PARTICLE_SET_H
-#else
-#define SPINDRIFT_SIM_PARTICLE_SET_H
-#endif
+#pragma once
 
 #include "device/buffer.h"
 #include "sim/output_passes.h"
@@ -255,5 +250,3 @@ private:
 };
 
 }  // namespace spindrift::LANES
-
-#endif

@@ -1,11 +1,6 @@
 // The passes of a step. A pass is a struct with a View and operator()(index); it reads neighbours and writes its
 // own particles only, never a field that it gathers. `Index` says how many particles one call works on.
-#if defined(SPINDRIFT_SIM_PASSES_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef SPINDRIFT_SIM_PASSES_H
-#undef SPINDRIFT_SIM_PASSES_H
-#else
-#define SPINDRIFT_SIM_PASSES_H
-#endif
+#pragma once
 
 #include "core/vertex.h"
 #include "sim/kernels.h"
@@ -441,5 +436,3 @@ struct StirFluid {
 };
 
 }  // namespace spindrift::LANES
-
-#endif

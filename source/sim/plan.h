@@ -1,10 +1,5 @@
 // What a step consists of. Included by simulation_on.h.
-#if defined(SPINDRIFT_SIM_PLAN_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef SPINDRIFT_SIM_PLAN_H
-#undef SPINDRIFT_SIM_PLAN_H
-#else
-#define SPINDRIFT_SIM_PLAN_H
-#endif
+#pragma once
 
 namespace spindrift::LANES {
 
@@ -134,5 +129,3 @@ template <class Device> template <class K> auto SimulationOn<Device>::ratePass()
 }
 
 }  // namespace spindrift::LANES
-
-#endif

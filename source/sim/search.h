@@ -1,10 +1,5 @@
 // What a neighbour search keeps between passes: boxes and lists of clusters with SIMD, nothing otherwise.
-#if defined(SPINDRIFT_SIM_SEARCH_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef SPINDRIFT_SIM_SEARCH_H
-#undef SPINDRIFT_SIM_SEARCH_H
-#else
-#define SPINDRIFT_SIM_SEARCH_H
-#endif
+#pragma once
 
 #ifdef SPINDRIFT_SIMD
 #include "sim/pair_sums.h"
@@ -28,6 +23,4 @@ struct PairSums {
     int64_t bytes() const { return 0; }
 };
 }  // namespace spindrift::LANES
-#endif
-
 #endif

@@ -1,11 +1,6 @@
-// The simulation, written once for any device and any lanes. Included by simulation_simd.cpp,
+// The simulation, written once for any device and any lanes. Included by simulation_simd.h,
 // simulation_double.cpp and simulation_cuda.cu, and by nothing else.
-#if defined(SPINDRIFT_SIM_SIMULATION_ON_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef SPINDRIFT_SIM_SIMULATION_ON_H
-#undef SPINDRIFT_SIM_SIMULATION_ON_H
-#else
-#define SPINDRIFT_SIM_SIMULATION_ON_H
-#endif
+#pragma once
 
 #include "device/buffer.h"
 #include "sim/constants.h"
@@ -478,5 +473,3 @@ template <class Device> Measurement SimulationOn<Device>::measure() {
 }  // namespace spindrift::LANES
 
 #include "sim/plan.h"
-
-#endif

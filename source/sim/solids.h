@@ -1,10 +1,5 @@
 // Solids in the fluid: where they are, what their particles know of them, what keeps fluid out of them, and what fluid does to them.
-#if defined(SPINDRIFT_SIM_SOLIDS_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef SPINDRIFT_SIM_SOLIDS_H
-#undef SPINDRIFT_SIM_SOLIDS_H
-#else
-#define SPINDRIFT_SIM_SOLIDS_H
-#endif
+#pragma once
 
 #include "core/error.h"
 #include "scene/convex.h"
@@ -312,5 +307,3 @@ private:
 };
 
 }  // namespace spindrift::LANES
-
-#endif

@@ -2,12 +2,7 @@
 // when it is wanted), what it reads of both particles, and adds itself: between fluid particles (`add`) and between a fluid particle and a
 // boundary particle (`addWall`). grad W = gradientNorm/R^5 g x, and what all pairs share, the mass m and
 // gradientNorm/R^5, is left out here and multiplied once, at the end of the pass.
-#if defined(SPINDRIFT_SIM_TERMS_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef SPINDRIFT_SIM_TERMS_H
-#undef SPINDRIFT_SIM_TERMS_H
-#else
-#define SPINDRIFT_SIM_TERMS_H
-#endif
+#pragma once
 
 #include "scene/scene.h"
 #include "sim/neighbours.h"
@@ -174,5 +169,3 @@ auto chooseTerms(const Scene& s, Done done, TermList<Chosen...> chosen, TermList
 }
 
 }  // namespace spindrift::LANES
-
-#endif

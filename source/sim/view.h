@@ -1,10 +1,5 @@
 // What a pass sees: raw pointers and the constants of a step, passed by value to every device.
-#if defined(SPINDRIFT_SIM_VIEW_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef SPINDRIFT_SIM_VIEW_H
-#undef SPINDRIFT_SIM_VIEW_H
-#else
-#define SPINDRIFT_SIM_VIEW_H
-#endif
+#pragma once
 
 #include "core/lanes.h"
 #include "core/vec.h"
@@ -198,5 +193,3 @@ template <class R> HD inline Vector<R> wallVelocity(const Constants& c, Vector<R
 }
 
 }  // namespace spindrift::LANES
-
-#endif
