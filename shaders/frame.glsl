@@ -1,6 +1,6 @@
 // The values of one picture, shared by all shaders; its twin is FrameBlock in render/renderer.cpp.
 layout(std140, binding = 0) uniform Frame {
-    mat4 view, projection;
+    mat4 view, projection, viewBefore;   // viewBefore: of the picture before
     vec4 eye, right, up, forward;   // of the picture; right and up reach its edges at distance 1
     vec4 sky;                       // the world's up in the camera's axes
     vec4 picture;                   // width, height, samples, line width in px
@@ -8,3 +8,5 @@ layout(std140, binding = 0) uniform Frame {
     vec4 particle;                  // radius in m, smallest in px, px a metre at distance 1, fluids
     vec4 color;                     // lowest value, 1 / span, row of the table, 1 = plain
 } frame;
+
+const int tileSize = 8;   // px, see render/occlusion.h

@@ -26,18 +26,28 @@ void Framebuffer::resize(int width, int height) {
     height_ = height;
     // New storage needs new names: the storage of a renderbuffer in use would be kept alive by its
     // framebuffer.
-    const auto attach = [&](GLuint framebuffer, GLenum point, GLenum format, int samples) {
+    const auto attachColor = [&](GLuint framebuffer, int samples) {
         GlRenderbuffer storage = makeRenderbuffer();
-        glNamedRenderbufferStorageMultisample(storage, samples > 1 ? samples : 0, format, width,
+        glNamedRenderbufferStorageMultisample(storage, samples > 1 ? samples : 0, GL_RGBA8, width,
                                               height);
-        glNamedFramebufferRenderbuffer(framebuffer, point, GL_RENDERBUFFER, storage);
+        glNamedFramebufferRenderbuffer(framebuffer, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, storage);
         return storage;
     };
-    color_ = attach(resolved_, GL_COLOR_ATTACHMENT0, GL_RGBA8, 1);
-    depth_ = attach(resolved_, GL_DEPTH_ATTACHMENT, GL_DEPTH_COMPONENT32F, 1);
+    const auto attachDepth = [&](GLuint framebuffer, int samples) {
+        GlTexture storage = makeTexture(samples > 1 ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D);
+        if (samples > 1)
+            glTextureStorage2DMultisample(storage, samples, GL_DEPTH_COMPONENT32F, width, height,
+                                          GL_TRUE);
+        else
+            glTextureStorage2D(storage, 1, GL_DEPTH_COMPONENT32F, width, height);
+        glNamedFramebufferTexture(framebuffer, GL_DEPTH_ATTACHMENT, storage, 0);
+        return storage;
+    };
+    color_ = attachColor(resolved_, 1);
+    depth_ = attachDepth(resolved_, 1);
     if (samples_ > 1) {
-        drawingColor_ = attach(drawing_, GL_COLOR_ATTACHMENT0, GL_RGBA8, samples_);
-        drawingDepth_ = attach(drawing_, GL_DEPTH_ATTACHMENT, GL_DEPTH_COMPONENT32F, samples_);
+        drawingColor_ = attachColor(drawing_, samples_);
+        drawingDepth_ = attachDepth(drawing_, samples_);
     }
     if (glCheckNamedFramebufferStatus(drawing(), GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
         throw Error(Exit::NoDisplay, "the driver refuses a picture of " + std::to_string(width) +

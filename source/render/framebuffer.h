@@ -15,6 +15,8 @@ public:
 
     GLuint drawing() const { return samples_ > 1 ? drawing_ : resolved_; }
     GLuint resolved() const { return resolved_; }
+    // Of the drawing framebuffer, multisampled if it is.
+    GLuint depthTexture() const { return samples_ > 1 ? drawingDepth_ : depth_; }
     // Averages the samples; afterwards resolved() holds the picture.
     void resolve() const;
     // Depth of a pixel counted from the upper left corner, 1 where nothing was drawn.
@@ -26,7 +28,8 @@ public:
 private:
     int width_ = 0, height_ = 0, samples_ = 1;
     GlFramebuffer drawing_, resolved_;
-    GlRenderbuffer drawingColor_, drawingDepth_, color_, depth_;
+    GlRenderbuffer drawingColor_, color_;
+    GlTexture drawingDepth_, depth_;
 };
 
 }  // namespace spindrift

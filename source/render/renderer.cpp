@@ -15,7 +15,7 @@ using Four = std::array<float, 4>;
 
 // std140 twin of the block in shaders/frame.glsl.
 struct FrameBlock {
-    Mat4 view, projection;
+    Mat4 view, projection, viewBefore;  // viewBefore: of the picture before
     Four eye, right, up, forward;  // of the picture; right and up reach its edges at distance 1
     Four sky;                      // the world's up in the camera's axes
     Four picture;                  // width, height, samples, line width in px
@@ -107,8 +107,8 @@ void Renderer::setSamples(int samples) {
 
 void Renderer::draw(const VertexBuffer& vertices, const DrawSettings& settings) {
     CHECK(!vertices.mapped());
-    camera_ = settings.camera;
     uploadFrame(settings);
+    camera_ = settings.camera;
     glBindFramebuffer(GL_FRAMEBUFFER, target_.drawing());
     glViewport(0, 0, width(), height());
     glDisable(GL_SCISSOR_TEST);
@@ -135,6 +135,7 @@ void Renderer::uploadFrame(const DrawSettings& s) {
     const FrameBlock block{
         camera.view(),
         camera.projection(aspect),
+        camera_.view(),
         pack(camera.eye()),
         pack(tangent * aspect * camera.right()),
         pack(tangent * camera.up()),
@@ -159,7 +160,17 @@ void Renderer::drawBackground(const DrawSettings&) {
     glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
+// Those of the picture before that nothing hid, then those of the others that nothing hides now.
 void Renderer::drawParticles(const VertexBuffer& vertices, const DrawSettings& s) {
+    occlusion_.resize(target_);
+    glVertexArrayVertexBuffer(vertices_, 0, vertices.name(), 0, sizeof(Vertex));
+    drawSpheres(s.fluidCount + s.wallCount, false);
+    occlusion_.look(target_);
+    drawSpheres(s.fluidCount + s.wallCount, true);
+    occlusion_.endPicture();
+}
+
+void Renderer::drawSpheres(int count, bool second) {
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LESS);
     glEnable(GL_PROGRAM_POINT_SIZE);
@@ -167,9 +178,10 @@ void Renderer::drawParticles(const VertexBuffer& vertices, const DrawSettings& s
     if (target_.samples() > 1) glEnable(GL_SAMPLE_ALPHA_TO_COVERAGE);
     glUseProgram(particles_);
     glBindTextureUnit(0, tables_);
-    glVertexArrayVertexBuffer(vertices_, 0, vertices.name(), 0, sizeof(Vertex));
+    occlusion_.bind();
+    glUniform1i(0, second);
     glBindVertexArray(vertices_);
-    glDrawArrays(GL_POINTS, 0, s.fluidCount + s.wallCount);
+    glDrawArrays(GL_POINTS, 0, count);
     glDisable(GL_SAMPLE_ALPHA_TO_COVERAGE);
 }
 

@@ -7,6 +7,7 @@
 #include "render/framebuffer.h"
 #include "render/image.h"
 #include "render/legend.h"
+#include "render/occlusion.h"
 #include "render/overlay.h"
 #include "render/vertex_buffer.h"
 
@@ -59,10 +60,12 @@ private:
     void uploadFrame(const DrawSettings&);
     void drawBackground(const DrawSettings&);
     void drawParticles(const VertexBuffer&, const DrawSettings&);
+    void drawSpheres(int count, bool second);
     void drawLines(const DrawSettings&);
 
     int samples_;  // as asked for; the driver may give fewer
     Framebuffer target_;
+    Occlusion occlusion_;
     GlProgram background_, particles_, lines_;
     GlVertexArray empty_, vertices_;
     GlBuffer frame_, segments_;

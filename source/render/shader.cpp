@@ -41,9 +41,9 @@ struct DeleteShader {
 };
 using GlShader = GlName<DeleteShader>;
 
-GlShader compile(GLenum stage, const std::string& path) {
+GlShader compile(GLenum stage, const std::string& path, const std::string& defines) {
     const std::string shared = read(pathOf("frame.glsl")), own = read(path);
-    const char* parts[] = {"#version 450 core\n", shared.c_str(), "\n#line 1\n", own.c_str()};
+    const char* parts[] = {"#version 450 core\n", defines.c_str(), shared.c_str(), "\n#line 1\n", own.c_str()};
     GlShader shader(glCreateShader(stage));
     glShaderSource(shader, GLsizei(std::size(parts)), parts, nullptr);
     glCompileShader(shader);
@@ -57,10 +57,10 @@ GlShader compile(GLenum stage, const std::string& path) {
 
 }  // namespace
 
-GlProgram loadProgram(const std::string& name) {
+GlProgram loadProgram(const std::string& name, const std::string& defines) {
     GlProgram program(glCreateProgram());
-    const GlShader vertex = compile(GL_VERTEX_SHADER, pathOf(name + ".vert"));
-    const GlShader fragment = compile(GL_FRAGMENT_SHADER, pathOf(name + ".frag"));
+    const GlShader vertex = compile(GL_VERTEX_SHADER, pathOf(name + ".vert"), defines);
+    const GlShader fragment = compile(GL_FRAGMENT_SHADER, pathOf(name + ".frag"), defines);
     glAttachShader(program, vertex);
     glAttachShader(program, fragment);
     glLinkProgram(program);

@@ -8,6 +8,7 @@ namespace spindrift {
 // Compiles shaders/NAME.vert and NAME.frag; frame.glsl, the values that all shaders share, comes
 // first in both. The folder is $SPINDRIFT_SHADERS, or the one known when the program was built.
 // Throws Error (NoDisplay) with the file's name and the compiler's words.
-GlProgram loadProgram(const std::string& name);
+// `defines`: lines that stand before everything.
+GlProgram loadProgram(const std::string& name, const std::string& defines = "");
 
 }  // namespace spindrift
