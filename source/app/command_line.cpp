@@ -1,6 +1,7 @@
 #include "app/command_line.h"
 
 #include "app/bench.h"
+#include "app/ceilings_bench.h"
 #include "app/compare.h"
 #include "app/error_bench.h"
 #include "app/frame_bench.h"
@@ -224,11 +225,12 @@ CLI::App* addCompare(CLI::App& app, CompareOptions& options) {
 struct BenchChoice {
     BenchOptions steps;
     ErrorBenchOptions error;
-    bool byError = false, byLocalSteps = false, byFrames = false;
+    bool byError = false, byLocalSteps = false, byFrames = false, byCeilings = false;
 };
 
 int runBench(const BenchChoice& choice) {
     if (choice.byFrames) return benchFrames();
+    if (choice.byCeilings) return benchCeilings();
     if (choice.byLocalSteps) return benchLocalSteps({choice.steps.only, choice.error.out});
     return choice.byError ? benchError(choice.error) : bench(choice.steps);
 }
@@ -249,6 +251,7 @@ CLI::App* addBench(CLI::App& app, BenchChoice& choice) {
     command->add_flag("--error", choice.byError, "run time against error instead, of flows with known answers; half an hour");
     command->add_flag("--local", choice.byLocalSteps, "local steps against the step of all instead; an hour");
     command->add_flag("--frames", choice.byFrames, "pictures of up to 200 thousand particles instead, drawn off screen");
+    command->add_flag("--ceilings", choice.byCeilings, "what the passes make of the machine's arithmetic and memory instead; a minute");
     command->add_option("--case", choice.error.cases, "with --error: only this flow; may be repeated")->type_name("NAME")
         ->allow_extra_args(false);
     command->add_flag("--coarsest", choice.error.coarsest, "with --error: only the coarsest resolution, minutes");

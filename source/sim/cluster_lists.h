@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/error.h"
+#include "core/pass_time.h"
 #include "device/omp.h"
 #include "sim/view.h"
 
@@ -52,6 +53,16 @@ public:
         for (const auto* arenas : {&entries_, &pruned_})
             for (const std::vector<uint32_t>& arena : *arenas) numbers += arena.capacity();
         return int64_t(lists_.capacity() * sizeof(ClusterList) + listed_.capacity() + (numbers + ends_.capacity()) * sizeof(uint32_t));
+    }
+    // If each pair is in one list only; within a cluster all look at all.
+    PairsSeen pairsSeen() const {
+        const double inside = double(lists_.size()) * clusterSize * clusterSize;
+        PairsSeen seen{inside, inside};
+        for (const ClusterList& list : lists_) {
+            seen.first += double(list.count) * clusterSize * clusterSize;
+            seen.later += double(Group::size == clusterSize ? list.prunedCount : list.count) * clusterSize * clusterSize;
+        }
+        return seen;
     }
     // One beyond the last cluster that clusters [begin, end) have in their lists or are themselves.
     int endOf(int begin, int end) const {

@@ -96,6 +96,8 @@ public:
     // A GPU steps while the program goes on: returns when it is done.
     virtual void wait() = 0;
 
+    // Of different fluid particles, in the last step, each once for what it gives to both; 0 where there are no lists.
+    virtual PairsSeen pairsSeen() = 0;
     virtual std::vector<PlanRow> plan() const = 0;
     // Memory that particles, cells and neighbour lists take on the device.
     virtual int64_t bytes() const = 0;

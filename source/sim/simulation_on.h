@@ -107,6 +107,7 @@ public:
     std::vector<Particle> particles() override { return fluid_.download(fluidCount_, scene_.domain.min); }
     Particle particle(int id) override { return fluid_.downloadOne(id, scene_.domain.min); }
 
+    PairsSeen pairsSeen() override { return fluidNearFluid_.pairsSeen(); }
     std::vector<PlanRow> plan() const override { return rows_; }
     int64_t bytes() const override {
         int64_t lists = 0;
