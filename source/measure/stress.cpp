@@ -140,9 +140,10 @@ void stirMadly(Simulation& simulation, Scene& scene, int step) {
 }
 
 // For formulations with free surfaces.
-void addViolent(const char* f, std::vector<StressCase>& out) {
+void addViolent(const char* f, TimeMode mode, std::vector<StressCase>& out) {
     auto add = [&](const char* name, int steps, const std::vector<std::string>& knobs) -> StressCase& {
-        out.push_back({fmt::format("{}: {}", f, name), box(f, knobs), steps, {}, {}, true});
+        out.push_back({fmt::format("{}{}: {}", f, mode == TimeMode::Local ? ", local steps" : "", name), box(f, knobs), steps, {}, {}, true});
+        out.back().scene.time.mode = mode;
         return out.back();
     };
     const std::string pool = R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[1,0.4,1]}])";
@@ -178,7 +179,8 @@ StressCase boxCase(const std::string& formulation, const std::vector<std::string
 
 std::vector<StressCase> tortures(bool full) {
     std::vector<StressCase> out;
-    for (const char* f : {"wcsph", "delta_sph", "delta_plus"}) addViolent(f, out);
+    for (const char* f : {"wcsph", "delta_sph", "delta_plus"}) addViolent(f, TimeMode::Cfl, out);
+    for (const char* f : {"wcsph", "delta_sph"}) addViolent(f, TimeMode::Local, out);
     const std::vector<std::string> tv{"simulation.dimensions=2", "simulation.spacing=0.03", "simulation.gravity=0,0,0", "fluid.rest_density=1",
                                       "fluid.equation_of_state=linear", "domain.max=0.99,0.99,1",
                                       R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.99,0.99,1]}])"};
@@ -241,6 +243,14 @@ void turnRareKnobs(Scene& s, uint64_t seed) {
     s.fluid.bodies = {all};
 }
 
+// One in three that can has local steps and rest.
+void turnLocal(Scene& s, uint64_t seed) {
+    Dice dice{std::mt19937_64(seed + 0xc2b2ae3d27d4eb4fu)};
+    const float restSpeed = dice.oneIn(2) ? dice.logarithmic(1e-5, 1e-2) : s.time.restSpeed;
+    if (!dice.oneIn(3) || shiftsParticles(s) || s.time.mode != TimeMode::Cfl || s.time.integrator != Integrator::SymplecticEuler) return;
+    s.time.mode = TimeMode::Local, s.time.restSpeed = restSpeed;
+}
+
 }  // namespace
 
 StressCase randomCase(uint64_t seed) {
@@ -290,6 +300,7 @@ StressCase randomCase(uint64_t seed) {
             s.fluid.bodies.push_back(body);
         }
         turnRareKnobs(s, seed);
+        turnLocal(s, seed);
         try {
             checkScene(s, s.name);
         } catch (const Error&) { continue; }   // makes no sense: the next throw of the dice

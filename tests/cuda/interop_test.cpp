@@ -52,6 +52,7 @@ public:
     void resetTimes() override { s_.resetTimes(); }
     std::vector<double> timeSteps(int n) override { return s_.timeSteps(n); }
     void wait() override { s_.wait(); }
+    PairsSeen pairsSeen() override { return s_.pairsSeen(); }
     std::vector<PlanRow> plan() const override { return s_.plan(); }
     int64_t bytes() const override { return s_.bytes(); }
     std::string deviceName() const override { return s_.deviceName(); }
