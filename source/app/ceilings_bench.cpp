@@ -19,20 +19,20 @@
 namespace spindrift {
 namespace {
 
+int cores() { return int(std::max(1u, std::thread::hardware_concurrency())); }
+
 // The least of several tries, s, of f(thread) on all cores at once.
 double secondsOnAllCores(const std::function<void(int)>& f) {
-    const int cores = int(std::max(1u, std::thread::hardware_concurrency()));
     double least = 1e30;
     for (int attempt = 0; attempt < 7; ++attempt) {
         const auto start = std::chrono::steady_clock::now();
         std::vector<std::thread> threads;
-        for (int k = 0; k < cores; ++k) threads.emplace_back(f, k);
+        for (int k = 0; k < cores(); ++k) threads.emplace_back(f, k);
         for (std::thread& t : threads) t.join();
         least = std::min(least, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     }
     return least;
 }
-int cores() { return int(std::max(1u, std::thread::hardware_concurrency())); }
 
 typedef float Wide __attribute__((vector_size(64)));
 constexpr int chains = 8;   // independent of one another: more than an addition takes cycles

@@ -74,6 +74,22 @@ TEST(Particle, OneIsWhatAllSay) {
     }
 }
 
+TEST(PairsSeen, AreAllThatCountAndNotManyMore) {
+    Scene scene = calm();
+    scene.compute.backend = Backend::Cpu;
+    scene.fluid.bodies[0].min = {0.2f, 0.2f, 0.2f}, scene.fluid.bodies[0].max = {0.8f, 0.8f, 0.8f};
+    const auto simulation = makeSimulation(scene);
+    simulation->step(2);
+    const std::vector<Particle> particles = simulation->particles();
+    double within = 0;
+    for (size_t i = 0; i < particles.size(); ++i)
+        for (size_t j = 0; j < i; ++j) within += length(particles[i].position - particles[j].position) < supportRadius(scene);
+    const PairsSeen seen = simulation->pairsSeen();
+    EXPECT_GE(seen.later, within);
+    EXPECT_GE(seen.first, seen.later);
+    EXPECT_LT(seen.first, 6 * within);
+}
+
 // v = g integral of s^2 (3 - 2 s), s = t / T: g T (s^3 - s^4 / 2), from T on g (t - T / 2). It goes on from a state as if nothing had been.
 TEST(Gravity, GrowsSmoothlyOverItsRamp) {
     for (Precision precision : {Precision::Float, Precision::Double}) {
