@@ -1,7 +1,6 @@
 // A particle becomes a square that just holds its sphere.
 layout(location = 0) in vec4 vertex;   // position, value
 layout(binding = 0) uniform sampler2D tables;
-
 layout(binding = 1) uniform sampler2D tilesBefore;
 layout(binding = 2) uniform sampler2D tilesNow;
 layout(location = 0) uniform bool second;   // draws those that the first call, with tilesBefore, left out wrongly

@@ -20,11 +20,13 @@ Occlusion::Tiles Occlusion::makeTiles(int width, int height) {
 }
 
 void Occlusion::resize(const Framebuffer& target) {
-    const int width = (target.width() + tileSize - 1) / tileSize, height = (target.height() + tileSize - 1) / tileSize;
-    if (width == width_ && height == height_ && target.samples() == samples_) return;
-    if (target.samples() != samples_)
-        program_ = loadProgram("tiles", target.samples() > 1 ? "#define MULTISAMPLED " + std::to_string(target.samples()) + "\n" : "");
-    width_ = width, height_ = height, samples_ = target.samples();
+    const int width = (target.width() + tileSize - 1) / tileSize,
+              height = (target.height() + tileSize - 1) / tileSize, samples = target.samples();
+    if (width == width_ && height == height_ && samples == samples_) return;
+    const std::string defines =
+        samples > 1 ? "#define MULTISAMPLED " + std::to_string(samples) + "\n" : "";
+    if (samples != samples_) program_ = loadProgram("tiles", defines);
+    width_ = width, height_ = height, samples_ = samples;
     now_ = makeTiles(width, height);
     before_ = makeTiles(width, height);
 }

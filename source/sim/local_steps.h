@@ -249,6 +249,7 @@ struct ChooseMoment {
         if (s.moment == 0) ++s.steps;
         s.speed = squareRoot(real(motion->speed2));
         s.evaluations += motion->due;
+        s.awake = motion->awake / count;
         s.allDue = s.level == 0 && motion->awake == count && !decides(s);
         s.allRest = motion->awake == 0 && !decides(s);
     }

@@ -262,8 +262,13 @@ private:
     }
     template <class Pass> void onWalls() { device_.forEach(walls_.slots(), Pass{view()}); }
     // Order and lists hold until two particles may have come closer by the skin.
-    bool nothingMovedFar() const { return keepsLists && travel_ < skin() / 2; }
-    float skin() const { return scene_.compute.skin * supportRadius(scene_); }
+    bool nothingMovedFar() const { return keepsLists && travel_ < skin_ / 2; }
+    // Where few are awake lists are short and the sort, which knows no rest, is what costs: both cost the same with a skin that grows as
+    // 1/sqrt(share awake). Blocks are large enough for 0.4 support radii.
+    float chooseSkin() {
+        const float asked = scene_.compute.skin, share = hasLocalSteps() ? float(std::max(clock().awake, 1e-3)) : 1;
+        return supportRadius(scene_) * std::max(asked, std::min(asked / std::sqrt(share), 0.4f));
+    }
     void moveSolids() { placeSolids(0); }
     void moveSolidsHalfWay() { placeSolids(0.5); }   // the clock is at the step's end
     void placeSolids(double stepsBack) {
@@ -272,6 +277,7 @@ private:
     }
     void sort() {
         if (nothingMovedFar()) return;
+        if constexpr (keepsLists) skin_ = chooseSkin();
         fluid_.sort(grid_);
         boxes_.compute(device_, fluid_.view());
         if (hasLocalSteps()) onFluid<ApplyEquationOfState>();   // of those who aren't due
@@ -287,7 +293,7 @@ private:
     // Of those who are looked at now; forces on solids may be asked for at any time.
     void findNeighbours() {
         const View v = view();
-        const float reach = supportRadius(scene_) + skin();
+        const float reach = supportRadius(scene_) + skin_;
         fluidNearFluid_.build(device_, grid_, reach, boxes_, v.fluid.due, boxes_, fluid_.cellStart(), pairsOnce());
         wallsNearFluid_.build(device_, grid_, reach, boxes_, v.fluid.due, wallBoxes_, walls_.cellStart());
         if (!wallsCarryPressure()) return;
@@ -326,7 +332,7 @@ private:
         if (!hasLocalSteps()) return;
         localSteps_.wake();
         StepState awake = clock();
-        awake.allDue = awake.allRest = false;
+        awake.allDue = awake.allRest = false, awake.awake = 1;
         device_.upload(clock_.data(), &awake, 1);
         device_.forEach(fluid_.slots(), WakeParticles{fluid_.view()});
     }
@@ -431,6 +437,7 @@ private:
     static constexpr const char* allAlike = "all take the same steps (time.mode)";
     static constexpr const char* noLists = "rows of cells are walked instead of lists";
     double travel_ = 1e30;      // m, bound of any particle's way since the lists were built
+    float skin_ = 0;            // m, how much further than the support these reach
     Boxes boxes_, wallBoxes_;
     NeighbourLists fluidNearFluid_, wallsNearFluid_, fluidNearWalls_, wallsNearWalls_;
     PairSums pairSums_;

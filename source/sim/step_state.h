@@ -17,6 +17,7 @@ struct StepState {
     int level = 0;           // particles are due whose steps are longest / 2^level and shorter
     bool allDue = false;     // at this moment, for certain
     bool allRest = false;    // until who rests is decided again
+    double awake = 1;        // share of the particles that don't rest
     double evaluations = 0;  // of a particle's forces, since the beginning of the run
 };
 
