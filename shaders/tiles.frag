@@ -1,9 +1,9 @@
 // Of each tile of the picture the farthest depth that any of its pixels shows.
-#ifdef MULTISAMPLED
+#if SAMPLES > 1
 layout(binding = 0) uniform sampler2DMS depths;
 float farthest(ivec2 at) {
     float depth = 0.0;
-    for (int s = 0; s < MULTISAMPLED; ++s) depth = max(depth, texelFetch(depths, at, s).r);
+    for (int s = 0; s < SAMPLES; ++s) depth = max(depth, texelFetch(depths, at, s).r);
     return depth;
 }
 #else

@@ -23,9 +23,8 @@ void Occlusion::resize(const Framebuffer& target) {
     const int width = (target.width() + tileSize - 1) / tileSize,
               height = (target.height() + tileSize - 1) / tileSize, samples = target.samples();
     if (width == width_ && height == height_ && samples == samples_) return;
-    const std::string defines =
-        samples > 1 ? "#define MULTISAMPLED " + std::to_string(samples) + "\n" : "";
-    if (samples != samples_) program_ = loadProgram("tiles", defines);
+    if (samples != samples_)
+        program_ = loadProgram("tiles", "#define SAMPLES " + std::to_string(samples) + "\n");
     width_ = width, height_ = height, samples_ = samples;
     now_ = makeTiles(width, height);
     before_ = makeTiles(width, height);

@@ -39,12 +39,7 @@ Image nextPicture(const std::vector<Vertex>& spheres, const DrawSettings& settin
 Image firstPicture(const std::vector<Vertex>& spheres, const DrawSettings& settings, int samples = 4) {
     rendererOf(width, height, samples);   // makes the context
     Renderer renderer(width, height, samples);
-    VertexBuffer buffer;
-    buffer.resize(int(spheres.size()));
-    std::copy(spheres.begin(), spheres.end(), buffer.map().data);
-    buffer.unmap();
-    renderer.draw(buffer, settings);
-    return renderer.image();
+    return pictureBy(renderer, spheres, settings);
 }
 
 TEST(Occlusion, NoPictureShowsWhatTheOneBeforeItWas) {
@@ -74,16 +69,11 @@ TEST(Occlusion, WhatComesToTheFrontIsSeen) {
 
 TEST(Occlusion, LeavesOutMostOfAFullBlock) {
     Renderer& renderer = rendererOf(width, height);
-    const std::vector<Vertex> spheres = block();
-    VertexBuffer buffer;
-    buffer.resize(int(spheres.size()));
-    std::copy(spheres.begin(), spheres.end(), buffer.map().data);
-    buffer.unmap();
     const auto pixelsLit = [&](const DrawSettings& settings) {
         GLuint query = 0;
         glGenQueries(1, &query);
         glBeginQuery(GL_FRAGMENT_SHADER_INVOCATIONS_ARB, query);
-        renderer.draw(buffer, settings);
+        pictureBy(renderer, block(), settings);
         glEndQuery(GL_FRAGMENT_SHADER_INVOCATIONS_ARB);
         GLuint64 count = 0;
         glGetQueryObjectui64v(query, GL_QUERY_RESULT, &count);

@@ -28,15 +28,19 @@ inline Renderer& rendererOf(int width, int height, int samples = 4) {
     return renderer;
 }
 
-inline Image picture(const std::vector<Vertex>& vertices, const DrawSettings& settings,
-                     int samples = 4, int width = 320, int height = 240) {
-    Renderer& renderer = rendererOf(width, height, samples);
+inline Image pictureBy(Renderer& renderer, const std::vector<Vertex>& vertices,
+                       const DrawSettings& settings) {
     VertexBuffer buffer;
     buffer.resize(int(vertices.size()));
     std::copy(vertices.begin(), vertices.end(), buffer.map().data);
     buffer.unmap();
     renderer.draw(buffer, settings);
     return renderer.image();
+}
+
+inline Image picture(const std::vector<Vertex>& vertices, const DrawSettings& settings,
+                     int samples = 4, int width = 320, int height = 240) {
+    return pictureBy(rendererOf(width, height, samples), vertices, settings);
 }
 
 struct Rgb {
