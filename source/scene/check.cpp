@@ -94,6 +94,26 @@ void checkFills(const Scene& scene, ParticleCount count) {
                            "or wcsph, or fill it", 100 * filled));
 }
 
+// Forces that not every formulation has.
+void checkRareForces(const Scene& scene) {
+    const Fluid& f = scene.fluid;
+    const Formulation formulation = scene.simulation.formulation;
+    const char* name = enumNames(Formulation())[size_t(formulation)];
+    if (formulation != Formulation::Wcsph && scene.simulation.pressureForm == PressureForm::Mean)
+        refuse("simulation.pressure_form", fmt::format("mean is one of wcsph; {} has its own, use squares", name));
+    if (formulation != Formulation::Wcsph && f.airDensity > 0)
+        refuse("fluid.air_density", fmt::format("who is at the surface is known by summed densities, which {} does not have; use wcsph, or 0", name));
+    const bool alone = formulation == Formulation::Classic || formulation == Formulation::TransportVelocity;
+    if (alone && (mixes(scene) || f.dissipation > 0))
+        refuse("fluid", fmt::format("velocity_transfer, buoyancy and dissipation are not of {}; use wcsph, delta_sph or delta_plus, or set "
+                                    "them to 0", name));
+    if (f.surfaceTension > 0 && formulation != Formulation::DeltaPlus)
+        refuse("fluid.surface_tension", fmt::format("needs particles that are kept evenly spread, or surfaces tear themselves apart; {} does "
+                                                    "not, use simulation.formulation delta_plus", name));
+    if (f.buoyancy > 0 && scene.simulation.gravityRamp > 0)
+        refuse("fluid.buoyancy", "goes with the whole gravity at once; set simulation.gravity_ramp or it to 0");
+}
+
 // Relaxing works through the whole box around the bodies, and has a start of its own.
 void checkPlacement(const Scene& scene) {
     const SimulationKnobs& s = scene.simulation;
@@ -351,6 +371,7 @@ void checkScene(const Scene& scene, const std::string& place, std::optional<Part
         const ParticleCount count = begun ? *begun : countBodies(scene);
         checkFills(scene, count);
         checkMovingFace(scene);
+        checkRareForces(scene);
         if (!begun) checkPlacement(scene);
         for (size_t i = 0; i < scene.solids.size(); ++i) checkSolid(scene, i);
         for (size_t p = 0; p < scene.output.probes.size(); ++p) checkProbe(scene, p);

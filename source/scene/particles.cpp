@@ -327,6 +327,10 @@ bool carriesDensity(const Scene& scene) {
     return scene.simulation.formulation == Formulation::DeltaSph || shiftsParticles(scene);
 }
 
+bool mixes(const Scene& scene) {
+    return scene.fluid.velocityTransfer > 0 || scene.fluid.buoyancy > 0;
+}
+
 bool shiftsParticles(const Scene& scene) {
     const Formulation f = scene.simulation.formulation;
     return f == Formulation::DeltaPlus || f == Formulation::TransportVelocity;
@@ -406,7 +410,9 @@ double soundSpeed(const Scene& s, const FluidExtent& fluid) {
     double start = std::max<double>(fluid.speed, length(s.walls.velocity));
     for (const Solid& solid : s.solids) start = std::max(start, largestSpeed(solid));
     const double pull = s.simulation.centralRate * length(0.5 * size);   // to the centre from a corner
-    return s.fluid.speedRatio * std::max(std::sqrt(start * start + 2 * fall + pull * pull), 1e-3);
+    // The pressure in the smallest drop that is one, 2 sigma / R.
+    const double tension = 4 * s.fluid.surfaceTension / (s.fluid.restDensity * supportRadius(s));
+    return s.fluid.speedRatio * std::max(std::sqrt(start * start + 2 * fall + pull * pull + tension), 1e-3);
 }
 
 // Whole shells of the bounding box.

@@ -13,7 +13,8 @@ enum class Backend { Auto, Cpu, Cuda };
 enum class Precision { Float, Double };
 enum class Simd { Auto, Avx512, Avx2, Sse };
 enum class Formulation { Wcsph, DeltaSph, DeltaPlus, TransportVelocity, Classic };
-enum class Kernel { WendlandC2, CubicSpline, WendlandC4, WendlandC6, QuinticSpline };
+enum class Kernel { WendlandC2, CubicSpline, WendlandC4, WendlandC6, QuinticSpline, Mueller };
+enum class PressureForm { Squares, Mean };
 enum class EquationOfState { Tait, Linear };
 enum class WallKind { Reflect, Particles };
 enum class TimeMode { Fixed, Cfl, Local };
@@ -87,6 +88,7 @@ struct SimulationKnobs {
     Kernel kernel = Kernel::WendlandC2;
     float spacing = 0.02f;                      // m, initial distance of particles
     float support = 2.6f;                       // support radius R / spacing
+    PressureForm pressureForm = PressureForm::Squares;   // of the forces between two particles
     Vec3 gravity{0, -9.81f, 0};                 // m/s^2
     float gravityRamp = 0;                      // s in which gravity grows from 0, 0 = there at once
     float centralRate = 0;                      // 1/s, Omega of a force -Omega^2 r towards the domain's centre
@@ -117,6 +119,14 @@ struct Fluid {
     float particleMass = 0;                     // kg, 0 = rest density x spacing^3
     float soundSpeed = 0;                       // m/s, 0 = speed_ratio x the expected largest speed
     float speedRatio = 10;                      // sound speed / expected largest speed
+    float backgroundPressure = 0;               // Pa, of fluid at rest density
+    float surfaceTension = 0;                   // N/m
+    float velocityTransfer = 0;                 // 1/s, at which neighbours take over each other's velocity
+    float buoyancy = 0;                         // of who is lighter than its surroundings, in units of gravity
+    float dissipation = 0;                      // 1/s, at which motion fades
+    float airDensity = 0;                       // kg/m^3, of the air that slows drops; 0 = none
+    float dragCoefficient = 0.47f;              // of the spheres as which it slows them
+    Vec3 wind{0, 0, 0};                         // m/s, of that air
     float viscosity = 0.001f;                   // Pa s, dynamic (Morris 1997); classic: its own coefficient
     float artificialViscosity = 0.05f;          // alpha of Monaghan 1992
     float densityDiffusion = 0.1f;              // delta of Molteni & Colagrossi 2009, where density is carried
@@ -204,6 +214,8 @@ float supportRadius(const Scene&);              // m
 float particleMass(const Scene&);               // kg; in two dimensions of a slab one spacing thick
 // Whether density follows the continuity equation from step to step, instead of being summed up anew.
 bool carriesDensity(const Scene&);
+// Whether there is velocity transfer or buoyancy.
+bool mixes(const Scene&);
 // Whether particles move a little beside the fluid, to stay evenly spread.
 bool shiftsParticles(const Scene&);
 

@@ -26,8 +26,9 @@ constexpr auto enumNames(Formulation) {
     return std::array{"wcsph", "delta_sph", "delta_plus", "transport_velocity", "classic"};
 }
 constexpr auto enumNames(Kernel) {
-    return std::array{"wendland_c2", "cubic_spline", "wendland_c4", "wendland_c6", "quintic_spline"};
+    return std::array{"wendland_c2", "cubic_spline", "wendland_c4", "wendland_c6", "quintic_spline", "mueller"};
 }
+constexpr auto enumNames(PressureForm) { return std::array{"squares", "mean"}; }
 constexpr auto enumNames(EquationOfState) { return std::array{"tait", "linear"}; }
 constexpr auto enumNames(WallKind) { return std::array{"reflect", "particles"}; }
 constexpr auto enumNames(TimeMode) { return std::array{"fixed", "cfl", "local"}; }
@@ -210,10 +211,12 @@ void visitPhysics(S& s, Visitor&& visit) {
                Restart});
     visit("simulation.dimensions", sim.dimensions,
           Knob{"", 2, 3, "2 = a layer of particles, everything depends on x and y only", Restart});
-    visit("simulation.kernel", sim.kernel, Knob{"", 0, 0, "smoothing kernel", Restart});
+    visit("simulation.kernel", sim.kernel, Knob{"", 0, 0, "smoothing kernel; mueller: poly6 for densities, the spiky one for gradients, one of its own for viscosity", Restart});
     visit("simulation.spacing", sim.spacing,
           Knob{"m", 1e-5f, 10, "initial distance of particles", Restart});
     visit("simulation.support", sim.support, Knob{"", 1, 6, "support radius / spacing", Restart});
+    visit("simulation.pressure_form", sim.pressureForm,
+          Knob{"", 0, 0, "of wcsph: squares: p_i / rho_i^2 + p_j / rho_j^2; mean: (p_i + p_j) / (2 rho_i rho_j)"});
     visit("simulation.gravity", sim.gravity, Knob{"m/s^2", -100, 100, "gravity; along a periodic axis the force that drives a channel's flow"});
     visit("simulation.gravity_ramp", sim.gravityRamp,
           Knob{"s", 0, 1e4f,
@@ -290,6 +293,19 @@ void visitFluid(S& s, Visitor&& visit) {
     visit("fluid.gamma", f.gamma, Knob{"", 1, 10, "exponent of the Tait equation"});
     visit("fluid.stiffness", f.stiffness,
           Knob{"Pa", 0, 1e10f, "pressure scale, 0 = rest density x sound speed^2 / gamma"});
+    visit("fluid.background_pressure", f.backgroundPressure,
+          Knob{"Pa", 0, 1e8f, "p0 of p = p0 + k ((rho / rho0)^gamma - 1): for fluid that fills its space; surfaces are pushed apart by it"});
+    visit("fluid.surface_tension", f.surfaceTension,
+          Knob{"N/m", 0, 1000, "of free surfaces (delta_plus), 0 = off"});
+    visit("fluid.velocity_transfer", f.velocityTransfer,
+          Knob{"1/s", 0, 1e4f, "rate at which neighbours take over each other's velocity, 0 = off: viscosity that does not ask for its unit"});
+    visit("fluid.buoyancy", f.buoyancy,
+          Knob{"", 0, 100, "who is lighter than the mean in its support rises with this times gravity times the share, 0 = off"});
+    visit("fluid.dissipation", f.dissipation, Knob{"1/s", 0, 100, "rate at which all motion fades, 0 = off"});
+    visit("fluid.air_density", f.airDensity,
+          Knob{"kg/m^3", 0, 100, "of air that slows drops and surfaces (wcsph), 0 = none"});
+    visit("fluid.drag_coefficient", f.dragCoefficient, Knob{"", 0, 10, "of a particle in that air, a sphere of its volume"});
+    visit("fluid.wind", f.wind, Knob{"m/s", -1e3f, 1e3f, "velocity of that air"});
 }
 
 template <class S, class Visitor>

@@ -24,9 +24,9 @@ template <class Kernel> double latticeLayer(const Scene& s, int height) {
     return sum * Kernel::norm(d) / std::pow(ratio, d);
 }
 
-// What sums over the neighbours of a lattice point give, which integrals would make 1: of W and of x dW/dx. The second is also
-// the Laplacian of x^2/2 in the form of LaminarViscosity.
-struct LatticeSums { double kernel = 0, gradient = 0; };
+// What sums over the neighbours of a lattice point give, which integrals would make 1: of W, of x dW/dx, and the Laplacian of x^2/2 in the form
+// of LaminarViscosity, which for most kernels is the second.
+struct LatticeSums { double kernel = 0, gradient = 0, viscous = 0; };
 
 template <class Kernel> LatticeSums latticeSums(const Scene& s) {
     const double ratio = s.simulation.support;
@@ -38,7 +38,8 @@ template <class Kernel> LatticeSums latticeSums(const Scene& s) {
             for (int x = -n; x <= n; ++x) {
                 const real q = real(std::sqrt(double(x * x + y * y + z * z)) / ratio);
                 sums.kernel += norm * double(Kernel::w(q));
-                sums.gradient -= norm / (ratio * ratio) * Kernel::gradient * double(Kernel::g(q)) * x * x;
+                sums.gradient -= norm / (ratio * ratio) * Kernel::gradient(d) * double(Kernel::g(q)) * x * x;
+                sums.viscous -= norm / (ratio * ratio) * Kernel::gradient(d) * double(viscous<Kernel>(q)) * x * x;
             }
     return sums;
 }
@@ -74,6 +75,34 @@ inline void slideFace(const Scene& s, Vec3 size, Constants& c) {
     c.slideVelocity = toVector(s.walls.velocity);
 }
 
+// Forces that few scenes have. Their sums are of a particle's mass in sums, multiplied with gradientScale in the end; means are of the smoothest
+// kernel, whichever the scene's is.
+inline void addRareForces(const Scene& s, double mass, Constants& c) {
+    const int d = s.simulation.dimensions;
+    const double R = supportRadius(s), rho0 = s.fluid.restDensity, dx = s.simulation.spacing, pi = 3.14159265358979323846;
+    c.surfaceTension = real(2 * s.fluid.surfaceTension / rho0);
+    c.normalScale = real(mass / rho0 * MeanKernel::gradient(d) * MeanKernel::norm(d) / std::pow(R, d + 2));
+    c.leastNormal = real(0.15 / R);   // a tenth of that of a flat surface
+    const double mean = mass * MeanKernel::norm(d) / std::pow(R, d);
+    c.velocityTransfer = real(s.fluid.velocityTransfer * mean / 2 / c.gradientScale);
+    c.buoyancy = real(s.fluid.buoyancy * mean / (rho0 * rho0) / c.gradientScale);
+    c.dissipation = real(s.fluid.dissipation);
+    const double volume = dx * dx * dx, across = pi * std::pow(3 * volume / (4 * pi), 2.0 / 3);
+    c.airDrag = real(s.fluid.airDensity * s.fluid.dragCoefficient * across / (2 * rho0 * volume));
+    c.wind = toVector(s.fluid.wind);
+}
+
+// What forces but pressure allow, s: viscosity (Morris 1997), surface tension (Brackbill 1992), exchanged velocity.
+inline double longestStep(const Scene& s) {
+    const Fluid& f = s.fluid;
+    const double h = supportRadius(s) / 2, rho0 = f.restDensity, pi = 3.14159265358979323846;
+    double step = 1e9;
+    if (f.viscosity > 0) step = 0.125 * h * h * rho0 / f.viscosity;
+    if (f.surfaceTension > 0) step = std::min(step, 0.25 * std::sqrt(rho0 * h * h * h / (2 * pi * f.surfaceTension)));
+    if (f.velocityTransfer > 0) step = std::min(step, 0.5 / f.velocityTransfer);
+    return step;
+}
+
 // Knobs that may change while running as well as those that don't.
 template <class Kernel> Constants makeConstants(const Scene& s, const FluidExtent& fluid) {
     const double R = supportRadius(s), h = R / 2, rho0 = s.fluid.restDensity;
@@ -83,15 +112,17 @@ template <class Kernel> Constants makeConstants(const Scene& s, const FluidExten
     c.restDensity = real(rho0);
     // On its lattice a linear pressure has its exact gradient and a parabolic velocity its exact Laplacian, as the lattice
     // has the rest density; without this, at R = 2.6 dx, the one is 3 %, the other 4 % too small.
-    const LatticeSums sums = s.simulation.formulation == Formulation::Classic ? LatticeSums{1, 1} : latticeSums<Kernel>(s);
+    const LatticeSums sums = s.simulation.formulation == Formulation::Classic ? LatticeSums{1, 1, 1} : latticeSums<Kernel>(s);
     const double mass = calibrateMasses<Kernel>(s, sums, c);
     const int d = s.simulation.dimensions;
     c.kernelScale = real(mass * Kernel::norm(d) / std::pow(R, d));
-    c.gradientScale = real(mass * Kernel::gradient * Kernel::norm(d) / std::pow(R, d + 2) * sums.kernel / sums.gradient);
+    c.aloneDensity = real(c.kernelScale * Kernel::w(real(0)) / rho0);
+    c.gradientScale = real(mass * Kernel::gradient(d) * Kernel::norm(d) / std::pow(R, d + 2) * sums.kernel / sums.gradient);
 
     c.gamma = linear ? 1 : s.fluid.gamma;
     const double sound = soundSpeed(s, fluid);
     c.stiffness = real(rho0 * sound * sound / c.gamma);
+    c.backgroundPressure = real(s.fluid.backgroundPressure);
     c.soundSpeed = real(sound);
 
     c.leastPressure = carriesDensity(s) ? real(-1e30) : real(0);
@@ -99,9 +130,10 @@ template <class Kernel> Constants makeConstants(const Scene& s, const FluidExten
     c.shifting = real(s.fluid.shifting * 2 * h);
     c.shiftWeight = 1 / Kernel::w(real(1 / s.simulation.support));
     c.dimensions = d, c.flatMoment = d == 2 ? 1 : 0;
-    c.laminar = real(2 * s.fluid.viscosity);
+    c.laminar = real(2 * s.fluid.viscosity * (sums.gradient / sums.viscous));
     c.artificial = real(s.fluid.artificialViscosity * sound * h / 2);
     c.classicViscosity = real(s.fluid.viscosity * particleMass(s) / (rho0 * 3.14159265358979323846 * std::pow(R, 5)) / c.gradientScale);
+    addRareForces(s, mass, c);
     c.eta2 = real(0.01 * h * h);
     c.accelerationLimit = s.simulation.accelerationLimit > 0 ? real(s.simulation.accelerationLimit) : real(1e18);
     c.gravity = toVector(s.simulation.gravity);
@@ -120,9 +152,8 @@ template <class Kernel> Constants makeConstants(const Scene& s, const FluidExten
     auto inverse = [](float length) { return length > 0 ? real(1 / double(length)) : real(0); };
     c.inversePeriod = {inverse(period.x), inverse(period.y), inverse(period.z)};
     c.restitution = s.walls.restitution, c.friction = s.walls.friction;
-    c.cfl = s.time.cfl, c.maxStep = s.time.maxStep, c.restSpeed = s.time.restSpeed;
+    c.cfl = s.time.cfl, c.maxStep = real(std::min(double(s.time.maxStep), longestStep(s))), c.restSpeed = s.time.restSpeed;
     c.fixedStep = s.time.mode == TimeMode::Fixed ? real(s.time.step) : real(0);
-    c.viscousStep = s.fluid.viscosity > 0 ? real(0.125 * h * h * rho0 / s.fluid.viscosity) : c.maxStep;
     return c;
 }
 

@@ -59,7 +59,7 @@ struct BeginStep {
     View v;
     HD void operator()(int) const {
         StepState& s = *v.state;
-        if (s.moment == 0) s.longest = untilStop(s, min(real(2) * acousticStep(v.c, real(s.speed)), min(v.c.maxStep, v.c.viscousStep)));
+        if (s.moment == 0) s.longest = untilStop(s, min(real(2) * acousticStep(v.c, real(s.speed)), v.c.maxStep));
     }
 };
 

@@ -21,7 +21,7 @@ public:
     const int* cellStart() const { return cellStart_.data(); }
 
     Particles view() const {
-        return {slots_, id_.data(), {position_.data()}, {velocity_.data()}, {acceleration_.data()},
+        return {slots_, id_.data(), {position_.data()}, {velocity_.data()}, {acceleration_.data()}, {addedForce_.data()}, {normal_.data()}, {normalLength_.data()},
                 {density_.data()}, {inverseDensity_.data()}, {pressureTerm_.data()}, {mass_.data()}, {outward_.data()}, {ownVelocity_.data()},
                 {densityRate_.data()}, {shiftVelocity_.data()}, {shiftAcceleration_.data()},
                 {kept_.position.data()}, {kept_.velocity.data()}, {kept_.density.data()}, {level_.data()}, due_.data()};
@@ -101,6 +101,13 @@ public:
     // What integrators need besides: a velocity, or all of a state.
     void keepVelocity() { keepsVelocity_ = true; }
     void keepState() { keepsVelocity_ = keepsState_ = true; }
+    // Sums of pairs for forces that come on top of the others; normals of the surface.
+    void addForces(bool pairs, bool normals) {
+        addsPairs_ = pairs, hasNormals_ = normals;
+        if (!pairs) addedForce_.release();
+        if (!normals) normal_.release(), normalLength_.release();
+        resize(slots_);
+    }
     // Particles have steps of their own, or walls are but looked at where fluid is due.
     void stepLocally(bool locally) {
         stepsLocally_ = locally;
@@ -175,6 +182,8 @@ private:
             return;
         }
         acceleration_.resize(vectorSize(slots));
+        if (addsPairs_) addedForce_.resize(vectorSize(slots));
+        if (hasNormals_) normal_.resize(vectorSize(slots)), normalLength_.resize(slots);
         inverseDensity_.resize(slots);
         if (carriesDensity_) densityRate_.resize(slots);
         if (shifts_)
@@ -236,10 +245,10 @@ private:
     Device& device_;
     Kind kind_;
     bool carriesVelocity_ = kind_ == Kind::Fluid, hasDensity_ = kind_ == Kind::Fluid, carriesDensity_ = false, shifts_ = false,
-         moves_ = false, keepsVelocity_ = false, keepsState_ = false, stepsLocally_ = false;
+         moves_ = false, keepsVelocity_ = false, keepsState_ = false, stepsLocally_ = false, addsPairs_ = false, hasNormals_ = false;
     int slots_ = 0, side_ = 0;
     Buffer<int, Device> id_{device_}, sortedId_{device_}, key_{device_}, order_{device_}, cellStart_{device_};
-    Buffer<real, Device> position_{device_}, velocity_{device_}, acceleration_{device_};
+    Buffer<real, Device> position_{device_}, velocity_{device_}, acceleration_{device_}, addedForce_{device_}, normal_{device_}, normalLength_{device_};
     Buffer<real, Device> sortedPosition_{device_}, sortedVelocity_{device_}, sortedDensity_{device_};
     Buffer<real, Device> densityRate_{device_}, shiftVelocity_{device_}, shiftAcceleration_{device_};
     Kept kept_{device_}, sortedKept_{device_};

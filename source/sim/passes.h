@@ -63,7 +63,7 @@ template <class Kernel> struct ComputeWallMass {
     }
 };
 
-// Density and what follows from it: the equation of state p = max(p_least, k ((rho/rho0)^gamma - 1)). A sum over few neighbours says
+// Density and what follows from it: the equation of state p = max(p_least, p0 + k ((rho/rho0)^gamma - 1)). A sum over few neighbours says
 // little of the fluid's density: 1/rho, which viscous forces go with twice, is never more than 1.25/rho0. (Without that, single drops at walls were
 // seen to blow up in thick fluid.)
 template <class I> HD inline void storeState(const View& v, I i, Real<I> rho) {
@@ -71,7 +71,7 @@ template <class I> HD inline void storeState(const View& v, I i, Real<I> rho) {
     const R ratio = rho * R(1 / v.c.restDensity);
     R power = ratio;
     for (int k = 1; k < v.c.gamma; ++k) power = power * ratio;
-    const R pressure = max(R(v.c.stiffness) * (power - R(1)), R(v.c.leastPressure));
+    const R pressure = max(mulAdd(R(v.c.stiffness), power - R(1), R(v.c.backgroundPressure)), R(v.c.leastPressure));
     const R inverse = R(1) / max(rho, R(real(0.8) * v.c.restDensity));
     store(v.fluid.density, i, rho);
     store(v.fluid.inverseDensity, i, inverse);
@@ -181,9 +181,11 @@ template <class R> struct Correction {
     }
 };
 
-// a_i = body force + m gradientNorm/R^5 times the sum of the scene's terms, corrected where the terms ask for it.
-template <class Kernel, Lists lists, class Terms> struct ComputeForces;
-template <class Kernel, Lists which, class... Terms> struct ComputeForces<Kernel, which, TermList<Terms...>> {
+// a_i = body force + m gradientNorm/R^5 times the sum of the scene's terms, corrected where the terms ask for it. With `Added` just the sum, on top of
+// what acceleration is already.
+enum class Forces { All, Added };
+template <class Kernel, Lists lists, class Terms, Forces role = Forces::All> struct ComputeForces;
+template <class Kernel, Lists which, class... Terms, Forces role> struct ComputeForces<Kernel, which, TermList<Terms...>, role> {
     static constexpr Lists lists = which;
     static constexpr uint8_t dueFrom = which == Lists::Prune ? Watched : Due;   // the density's rate needs the pruned lists
     using Index = Group;
@@ -200,26 +202,28 @@ template <class Kernel, Lists which, class... Terms> struct ComputeForces<Kernel
     }
     template <class I> HD State<R> state(I i) const { return loadState<needs>(v.fluid, i); }
     template <class A> HD void add(const Pair<R>& p, const State<R>& own, const State<R>& other, A& a) const {
-        (Terms::add(v.c, p, Kernel::g(p.q), own, other, a), ...);
+        const Weights<R> k = weights<Kernel>(p.q);
+        (Terms::add(v.c, p, k, own, other, a), ...);
     }
     // `a`: lane by lane, `whole`: the same for all of a particle's lanes.
     HD void finish(Group i, Vector<R> x, const State<R>& own, Acceleration<R> a, Vector<R> whole) const {
         const Vector<real> gravity = gravityNow(v);
         forNeighbours<lists>(v, v.wallsNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
-            (Terms::addWall(v.c, p, Kernel::g(p.q), own, loadWall<needs>(v.walls, j), a), ...);
+            (Terms::addWall(v.c, p, weights<Kernel>(p.q), own, loadWall<needs>(v.walls, j), a), ...);
         });
         const R scale = v.c.gradientScale;
         Vector<R> pressure = scale * (whole + total(a.pressure)), other = scale * total(a.other);
-        if constexpr (needs & Pressure) {
+        if constexpr (needs & Moments) {
             const Correction<R> correction(v.c, total(a.moments));
             pressure = -own.inverseDensity * (correction.inverse * pressure);
             other = correction.perTrace * other;
         }
+        if constexpr (role == Forces::Added) return store(v.fluid.acceleration, i, load(v.fluid.acceleration, i) + pressure + other);
         store(v.fluid.acceleration, i, limited(pressure) + other + bodyForce(v.c, gravity, x));
     }
     // For lists with each pair once (PairSums), where no part of the acceleration is limited.
     static constexpr bool opposite = true;
-    VectorField field() const { return v.fluid.acceleration; }
+    VectorField field() const { return role == Forces::Added ? v.fluid.addedForce : v.fluid.acceleration; }
     HD Vector<R> of(const Pair<R>& p, const State<R>& own, const State<R>& other) const {
         PairAcceleration<R> a{};
         add(p, own, other, a);
@@ -409,7 +413,7 @@ struct ChooseTimeStep {
         const real speed = squareRoot(real(extremes->speed2));
         if (dt <= 0) {
             const real pull = squareRoot(real(extremes->acceleration2));
-            const real fastest = min(acousticStep(c, speed), min(c.maxStep, c.viscousStep));
+            const real fastest = min(acousticStep(c, speed), c.maxStep);
             dt = untilStop(*v.state, min(fastest, real(0.25) * squareRoot(c.support / 2 / max(pull, real(1e-12)))));
         }
         v.state->dt = dt;
@@ -417,6 +421,22 @@ struct ChooseTimeStep {
         v.state->volume = extremes->count > 0 ? extremes->volume / extremes->count : 1;
         advanceTime(*v.state, dt);
         ++v.state->steps;
+    }
+};
+
+// What slows particles down without a neighbour: dissipation, -d u, and the air, as it slows spheres of their volume: -k |u - wind| (u - wind) where
+// nothing hides them, which is where their density is no more than what they have of themselves.
+struct ResistMotion {
+    using Index = Quad;
+    View v;
+    HD void operator()(Quad i) const {
+        using R = Real<Quad>;
+        if (!isDue(v.fluid, i)) return;
+        const Vector<R> u = load(v.fluid.velocity, i), wind{v.c.wind.x, v.c.wind.y, v.c.wind.z}, past = u - wind;
+        const R hidden = (load(v.fluid.density, i) * R(1 / v.c.restDensity) - R(v.c.aloneDensity)) * R(1 / (1 - v.c.aloneDensity));
+        const R exposed = R(1) - min(max(hidden, R(0)), R(1));
+        const R drag = R(v.c.airDrag) * exposed * squareRoot(dot(past, past));
+        store(v.fluid.acceleration, i, subtractScaled(subtractScaled(load(v.fluid.acceleration, i), R(v.c.dissipation), u), drag, past));
     }
 };
 

@@ -58,6 +58,13 @@ template <class Device> template <class K> void SimulationOn<Device>::evaluateFo
                            : addPass("density", pairPass<ComputeDensity<K>>(), initial);
     addPass("walls", wallPass<K>(), initial, whyNoWallPressure());
     addPass("forces", forcePass<K>(), initial);
+    const char* noTension = scene_.fluid.surfaceTension > 0 ? "" : "fluid.surface_tension is 0";
+    addPass("normals", &S::template onFluid<ComputeNormals>, initial, noTension);
+    addPass("surface tension", &S::template onFluid<AddSurfaceTension>, initial, noTension);
+    addPass("mixing", pairPass<ComputeForces<MeanKernel, Lists::Pruned, Mixing, Forces::Added>>(), initial,
+            mixes(scene_) ? "" : "fluid.velocity_transfer and fluid.buoyancy are 0");
+    addPass("resistance", &S::template onFluid<ResistMotion>, initial, scene_.fluid.dissipation + scene_.fluid.airDensity > 0 ? "" :
+            "fluid.dissipation and fluid.air_density are 0");
 }
 
 // Symplectic Euler from one moment to the next at which anybody is due.
@@ -111,6 +118,8 @@ template <class Device> template <class K> auto SimulationOn<Device>::forcePass(
     if (scene_.simulation.formulation == Formulation::Classic)
         return chooseTerms(scene_, [](auto terms) { return forces<K, Lists::Pruned>(terms); }, TermList<PressureForce>{},
                            TermList<ClassicViscosity>{});
+    if (scene_.simulation.pressureForm == PressureForm::Mean)
+        return pairPass<ComputeForces<K, Lists::Pruned, TermList<MeanPressureForce, LaminarViscosity, ArtificialViscosity>>>();
     return chooseTerms(scene_, [this](auto terms) { return pairPass<ComputeForces<K, Lists::Pruned, decltype(terms)>>(); },
                        TermList<PressureForce>{}, Viscosities{});
 }

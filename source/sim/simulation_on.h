@@ -12,6 +12,7 @@
 #include "sim/search.h"
 #include "sim/simulation.h"
 #include "sim/solids.h"
+#include "sim/surface.h"
 
 #include <algorithm>
 #include <numeric>
@@ -148,6 +149,7 @@ private:
             constants_ = makeConstants<K>(scene_, extent_);
             makePlan<K>();
         });
+        fluid_.addForces(pairsOnce() && mixes(scene_), scene_.fluid.surfaceTension > 0);
         fluid_.stepLocally(hasLocalSteps());
         walls_.stepLocally(hasLocalSteps());
         if (hasLocalSteps() && !localSteps_.used()) localSteps_.resize(grid_, real(2 * supportRadius(scene_) * (1 + scene_.compute.skin)));

@@ -175,7 +175,7 @@ template <class Kernel, class... Terms> struct ComputeWallLoads<Kernel, TermList
         forNeighbours<Lists::All>(v, v.fluidNearWalls, b, load(v.walls.position, b), [&](auto p, Four j) LANE_CALL {
             p.r = R(-1) * p.r;
             const State<R> fluid = loadState<needs>(v.fluid, j);
-            (Terms::addWall(v.c, p, Kernel::g(p.q), fluid, wall, a), ...);
+            (Terms::addWall(v.c, p, weights<Kernel>(p.q), fluid, wall, a), ...);
         });
         const R scale = -v.c.gradientScale;
         store(pressure, b, scale * total(a.pressure));

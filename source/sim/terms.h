@@ -5,24 +5,23 @@
 #pragma once
 
 #include "scene/scene.h"
+#include "sim/kernels.h"
 #include "sim/neighbours.h"
 
 namespace spindrift::LANES {
 
-enum Needs : unsigned { Velocity = 1, InverseDensity = 2, WallVelocity = 4, Pressure = 8, OwnVelocity = 16 };
+enum Needs : unsigned { Velocity = 1, InverseDensity = 2, WallVelocity = 4, Pressure = 8, OwnVelocity = 16, Density = 32, Moments = 64 };
 
 // What terms read of one particle.
-template <class R> struct State { Vector<R> velocity; R pressureTerm, inverseDensity, pressure; };
+template <class R> struct State { Vector<R> velocity; R pressureTerm, inverseDensity, pressure, density; };
 
 template <unsigned needs, class I> HD inline State<Real<I>> loadState(const Particles& p, I i) {
     State<Real<I>> s;
     s.pressureTerm = load(p.pressureTerm, i);
     if constexpr (needs & Velocity) s.velocity = load(p.velocity, i);
     if constexpr (needs & InverseDensity) s.inverseDensity = load(p.inverseDensity, i);
-    if constexpr (needs & Pressure) {
-        const Real<I> rho = load(p.density, i);
-        s.pressure = s.pressureTerm * rho * rho;
-    }
+    if constexpr (needs & (Pressure | Density)) s.density = load(p.density, i);
+    if constexpr (needs & Pressure) s.pressure = s.pressureTerm * s.density * s.density;
     return s;
 }
 
@@ -37,6 +36,10 @@ template <unsigned needs, class I> HD inline Wall<Real<I>> loadWall(const Partic
     if constexpr (needs & OwnVelocity) w.own = ownVelocity(p, i);
     return w;
 }
+
+// A kernel at one distance, without what all pairs share: what gradients, Laplacians and means are sums of. What no term reads isn't computed.
+template <class R> struct Weights { R g, viscous, w; };
+template <class Kernel, class R> HD inline Weights<R> weights(R q) { return {Kernel::g(q), viscous<Kernel>(q), Kernel::w(q)}; }
 
 // What terms add to, summed over neighbours. The pressure part is kept apart because the classic formulation caps it. Moments sum
 // (V_j / m) g r r: what gradients are corrected by.
@@ -65,32 +68,47 @@ struct PressureForce {
     static constexpr const char* name = "pressure";
     static const char* skipped(const Scene&) { return ""; }
     template <class R, class A>
-    HD static void add(const Constants&, const Pair<R>& p, R g, const State<R>& i, const State<R>& j, A& a) {
-        a.addPressure(g * (i.pressureTerm + j.pressureTerm), p.r);
+    HD static void add(const Constants&, const Pair<R>& p, const Weights<R>& k, const State<R>& i, const State<R>& j, A& a) {
+        a.addPressure(k.g * (i.pressureTerm + j.pressureTerm), p.r);
     }
     template <class R, class A>
-    HD static void addWall(const Constants&, const Pair<R>& p, R g, const State<R>& i, const Wall<R>& b, A& a) {
-        a.addPressure(b.mass * g * (i.pressureTerm + b.pressureTerm), p.r);
+    HD static void addWall(const Constants&, const Pair<R>& p, const Weights<R>& k, const State<R>& i, const Wall<R>& b, A& a) {
+        a.addPressure(b.mass * k.g * (i.pressureTerm + b.pressureTerm), p.r);
+    }
+};
+
+// -sum_j m (p_i + p_j) / (2 rho_i rho_j) grad W, Mueller 2003, divided by rho_i.
+struct MeanPressureForce {
+    static constexpr unsigned needs = Pressure | InverseDensity;
+    static constexpr const char* name = "mean pressure";
+    template <class R, class A>
+    HD static void add(const Constants&, const Pair<R>& p, const Weights<R>& k, const State<R>& i, const State<R>& j, A& a) {
+        a.addPressure(k.g * R(real(0.5)) * (i.pressure + j.pressure) * (i.inverseDensity * j.inverseDensity), p.r);
+    }
+    template <class R, class A>
+    HD static void addWall(const Constants& c, const Pair<R>& p, const Weights<R>& k, const State<R>& i, const Wall<R>& b, A& a) {
+        const R rho0 = c.restDensity;
+        a.addPressure(b.mass * k.g * R(real(0.5)) * mulAdd(i.pressure, R(1 / c.restDensity), rho0 * b.pressureTerm) * i.inverseDensity, p.r);
     }
 };
 
 // -(grad p) / rho_i from differences, sum_j V_j (p_j - p_i) grad W, for ComputeForces to divide by the moments: exact for
 // linear pressures however the particles lie (Randles & Libersky 1996), where fluid is all around. It does not keep momentum to round-off.
 struct CorrectedPressureForce {
-    static constexpr unsigned needs = Pressure | InverseDensity;
+    static constexpr unsigned needs = Pressure | InverseDensity | Moments;
     static constexpr const char* name = "corrected pressure";
     template <class R> HD static void addDifference(Acceleration<R>& a, R weight, R difference, Vector<R> r) {
         a.moments = addOuter(a.moments, weight, r);
         a.pressure = addScaled(a.pressure, weight * difference, r);
     }
     template <class R>
-    HD static void add(const Constants&, const Pair<R>& p, R g, const State<R>& i, const State<R>& j, Acceleration<R>& a) {
-        addDifference(a, g * j.inverseDensity, j.pressure - i.pressure, p.r);
+    HD static void add(const Constants&, const Pair<R>& p, const Weights<R>& k, const State<R>& i, const State<R>& j, Acceleration<R>& a) {
+        addDifference(a, k.g * j.inverseDensity, j.pressure - i.pressure, p.r);
     }
     template <class R>
-    HD static void addWall(const Constants& c, const Pair<R>& p, R g, const State<R>& i, const Wall<R>& b, Acceleration<R>& a) {
+    HD static void addWall(const Constants& c, const Pair<R>& p, const Weights<R>& k, const State<R>& i, const Wall<R>& b, Acceleration<R>& a) {
         const R rho0 = c.restDensity;
-        addDifference(a, g * b.mass * R(1 / c.restDensity), b.pressureTerm * rho0 * rho0 - i.pressure, p.r);
+        addDifference(a, k.g * b.mass * R(1 / c.restDensity), b.pressureTerm * rho0 * rho0 - i.pressure, p.r);
     }
 };
 
@@ -104,12 +122,12 @@ struct LaminarViscosity {
         return s.fluid.viscosity > 0 ? "" : "fluid.viscosity is 0";
     }
     template <class R, class A>
-    HD static void add(const Constants& c, const Pair<R>&, R g, const State<R>& i, const State<R>& j, A& a) {
-        a.addOther(R(c.laminar) * g * i.inverseDensity * j.inverseDensity, i.velocity - j.velocity);
+    HD static void add(const Constants& c, const Pair<R>&, const Weights<R>& k, const State<R>& i, const State<R>& j, A& a) {
+        a.addOther(R(c.laminar) * k.viscous * i.inverseDensity * j.inverseDensity, i.velocity - j.velocity);
     }
     template <class R, class A>
-    HD static void addWall(const Constants& c, const Pair<R>&, R g, const State<R>& i, const Wall<R>& b, A& a) {
-        a.addOther(R(c.laminar) * g * i.inverseDensity * i.inverseDensity * b.mass, i.velocity - b.velocity);
+    HD static void addWall(const Constants& c, const Pair<R>&, const Weights<R>& k, const State<R>& i, const Wall<R>& b, A& a) {
+        a.addOther(R(c.laminar) * k.viscous * i.inverseDensity * i.inverseDensity * b.mass, i.velocity - b.velocity);
     }
 };
 
@@ -127,13 +145,13 @@ struct ArtificialViscosity {
         return R(c.artificial) * g * (min(dot(vij, p.r), R(0)) * p.inverseDistance2);
     }
     template <class R, class A>
-    HD static void add(const Constants& c, const Pair<R>& p, R g, const State<R>& i, const State<R>& j, A& a) {
-        const R s = approach(c, p, g, i.velocity - j.velocity);
+    HD static void add(const Constants& c, const Pair<R>& p, const Weights<R>& k, const State<R>& i, const State<R>& j, A& a) {
+        const R s = approach(c, p, k.g, i.velocity - j.velocity);
         a.addAlong(s * (i.inverseDensity + j.inverseDensity), p.r);
     }
     template <class R, class A>
-    HD static void addWall(const Constants& c, const Pair<R>& p, R g, const State<R>& i, const Wall<R>& b, A& a) {
-        const R s = approach(c, p, g, i.velocity - b.own);
+    HD static void addWall(const Constants& c, const Pair<R>& p, const Weights<R>& k, const State<R>& i, const Wall<R>& b, A& a) {
+        const R s = approach(c, p, k.g, i.velocity - b.own);
         a.addAlong(b.mass * s * (i.inverseDensity + i.inverseDensity), p.r);
     }
 };
@@ -147,15 +165,43 @@ struct ClassicViscosity {
         return s.fluid.viscosity > 0 ? "" : "fluid.viscosity is 0";
     }
     template <class R, class A>
-    HD static void add(const Constants& c, const Pair<R>& p, R, const State<R>& i, const State<R>& j, A& a) {
+    HD static void add(const Constants& c, const Pair<R>& p, const Weights<R>&, const State<R>& i, const State<R>& j, A& a) {
         a.addOther(R(c.classicViscosity) * max(R(1) - p.q, R(0)), j.velocity - i.velocity);
     }
     template <class R, class A>
-    HD static void addWall(const Constants&, const Pair<R>&, R, const State<R>&, const Wall<R>&, A&) {}
+    HD static void addWall(const Constants&, const Pair<R>&, const Weights<R>&, const State<R>&, const Wall<R>&, A&) {}
+};
+
+// Viscosity as velocity transfer: sum_j V_j W (v_j - v_i) a time of 1 / rate (Schechter & Bridson 2012's XSPH as a rate); walls slip.
+struct VelocityTransfer {
+    static constexpr unsigned needs = Velocity | InverseDensity;
+    static constexpr const char* name = "velocity transfer";
+    static const char* skipped(const Scene& s) { return s.fluid.velocityTransfer > 0 ? "" : "fluid.velocity_transfer is 0"; }
+    template <class R, class A>
+    HD static void add(const Constants& c, const Pair<R>&, const Weights<R>& k, const State<R>& i, const State<R>& j, A& a) {
+        a.addOther(R(c.velocityTransfer) * k.w * (i.inverseDensity + j.inverseDensity), j.velocity - i.velocity);
+    }
+    template <class R, class A>
+    HD static void addWall(const Constants&, const Pair<R>&, const Weights<R>&, const State<R>&, const Wall<R>&, A&) {}
+};
+
+// b g (rho_i - mean) / rho0, the mean inside the support: b g sum_j V W (rho_i - rho_j) / rho0. Who is lighter than those around it rises faster.
+struct Buoyancy {
+    static constexpr unsigned needs = Density;
+    static constexpr const char* name = "buoyancy";
+    static const char* skipped(const Scene& s) { return s.fluid.buoyancy > 0 ? "" : "fluid.buoyancy is 0"; }
+    template <class R, class A>
+    HD static void add(const Constants& c, const Pair<R>&, const Weights<R>& k, const State<R>& i, const State<R>& j, A& a) {
+        const Vector<R> gravity{c.gravity.x, c.gravity.y, c.gravity.z};
+        a.addOther(R(c.buoyancy) * k.w * (i.density - j.density), gravity);
+    }
+    template <class R, class A>
+    HD static void addWall(const Constants&, const Pair<R>&, const Weights<R>&, const State<R>&, const Wall<R>&, A&) {}
 };
 
 template <class... Ts> struct TermList { static constexpr unsigned needs = (0u | ... | Ts::needs); };
 using Viscosities = TermList<LaminarViscosity, ArtificialViscosity>;   // of all formulations but the classic one
+using Mixing = TermList<VelocityTransfer, Buoyancy>;   // in a pass of their own, as rare as they are
 using OptionalTerms = TermList<LaminarViscosity, ArtificialViscosity, ClassicViscosity>;
 
 // Calls done(TermList<...>) with just the terms this scene wants: a run-time scene becomes a compile-time list.

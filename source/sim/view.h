@@ -18,6 +18,9 @@ struct Particles {
     VectorField position;          // m, relative to the domain's lower corner
     VectorField velocity;          // m/s; of boundary particles the one that makes fluid stick to them, where it does
     VectorField acceleration;      // m/s^2
+    VectorField addedForce;        // sums of pairs for what comes on top, in units of gradientScale; where there is any
+    VectorField normal;            // of the surface, inward, of length 1, or 0 where there is none; with surface tension
+    ScalarField normalLength;      // 1/m, |sum_j V grad W|
     ScalarField density;           // kg/m^3; of boundary particles only where density gradients are wanted
     ScalarField inverseDensity;    // m^3/kg
     ScalarField pressureTerm;      // p / rho^2
@@ -107,16 +110,25 @@ struct Constants {
     real selfWeight;                              // 1: a particle counts itself in its density; 0: not
     real wallFactor, wallMassFloor;               // boundary mass m_b = wallFactor rho0 / sum W; floor in units of m
     real restDensity;                             // kg/m^3
-    real stiffness; int gamma;                    // p = k ((rho/rho0)^gamma - 1), Pa
+    real stiffness; int gamma;                    // p = p0 + k ((rho/rho0)^gamma - 1), Pa
+    real backgroundPressure;                      // p0, Pa
     real leastPressure;                           // Pa
     real diffusion;                               // 2 delta h c, m^2/s, of carried density
     real shifting;                                // shift velocity per largest speed, m
     real shiftWeight;                             // 1 / w at the distance of neighbours on the lattice
     int dimensions;
     real flatMoment;                              // what makes moments in two dimensions invertible: 1, otherwise 0
-    real laminar;                                 // 2 mu, Pa s
+    real laminar;                                 // 2 mu, Pa s, for the kernel's own sums of Laplacians
     real artificial;                              // alpha c h / 2, m^2/s
     real classicViscosity;                        // nu m / (rho0 pi R^5) in units of gradientScale
+    real surfaceTension;                          // 2 sigma / rho0, m^3/s^2
+    real normalScale;                             // m gradientNorm / (rho0 R^5) of MeanKernel
+    real leastNormal;                             // 1/m: shorter ones belong to no surface
+    real velocityTransfer;                        // rate kernelScale / 2 in units of gradientScale
+    real buoyancy;                                // b kernelScale / rho0^2 in units of gradientScale
+    real dissipation, airDrag;                    // 1/s, 1/m
+    Vector<real> wind;                            // m/s
+    real aloneDensity;                            // of a particle without neighbours / rho0
     real eta2;                                    // 0.01 h^2, keeps 1/d^2 finite
     real accelerationLimit;                       // m/s^2
     Vector<real> gravity;                         // m/s^2
@@ -130,7 +142,8 @@ struct Constants {
     Vector<real> period, inversePeriod;           // m, 1/m, of periodic axes; 0 for the others
     bool periodic;                                // any of them
     real restitution, friction;
-    real soundSpeed, cfl, maxStep, fixedStep, viscousStep;
+    real soundSpeed, cfl, fixedStep;
+    real maxStep;                                 // s, what is asked for and what forces but pressure allow
     real restSpeed;                               // below that share of the speed of sound fluid may rest, 0: nothing rests
     Vector<real> stirCenter, stirVelocity;
     real stirRadius;

@@ -37,6 +37,16 @@ TEST(CheckScene, AcceptsTheDefaultsAndAllConfigs) {
 
 TEST(CheckScene, RefusesNonsenseByPathAndRemedy) {
     const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
+        {{"fluid.surface_tension=0.07"}, "a.json: fluid.surface_tension: needs particles that are kept evenly spread, or surfaces tear themselves apart; "
+                                         "wcsph does not, use simulation.formulation delta_plus"},
+        {{"simulation.formulation=delta_sph", "fluid.air_density=1"}, "a.json: fluid.air_density: who is at the surface is known by summed densities, "
+                                                                      "which delta_sph does not have; use wcsph, or 0"},
+        {{"simulation.formulation=delta_sph", "simulation.pressure_form=mean"}, "a.json: simulation.pressure_form: mean is one of wcsph; delta_sph has "
+                                                                                "its own, use squares"},
+        {{"fluid.buoyancy=1", "simulation.gravity_ramp=1"}, "a.json: fluid.buoyancy: goes with the whole gravity at once; set simulation.gravity_ramp "
+                                                            "or it to 0"},
+        {{"simulation.formulation=classic", "domain.max=0.9,0.9,0.9", "fluid.dissipation=1"},
+         "a.json: fluid: velocity_transfer, buoyancy and dissipation are not of classic; use wcsph, delta_sph or delta_plus, or set them to 0"},
         {{"domain.max=0,1,1"}, "a.json: domain.max: x = 0 m is not above domain.min x = 0 m"},
         {{"domain.max=0.01,1,1"}, "domain: 0.01 m along x is less than the support radius"},
         {{"simulation.support=1.2"}, "simulation.support: 1.2 leaves particles without neighbours"},

@@ -81,7 +81,7 @@ TEST(ReadScene, NamesPlaceAndRemedyOfEachMistake) {
         {R"({"version": 2, "simulation": {"gravity": [0, -981, 0]}})",
          "[0,-981,0] is out of range"},
         {R"({"version": 2, "simulation": {"kernel": "wendland"}})",
-         "expected one of wendland_c2, cubic_spline, wendland_c4, wendland_c6, quintic_spline, found \"wendland\"; did you mean "
+         "expected one of wendland_c2, cubic_spline, wendland_c4, wendland_c6, quintic_spline, mueller, found \"wendland\"; did you mean "
          "\"wendland_c2\"?"},
         {R"({"version": 2, "compute": {"threads": 1.5}})",
          "compute.threads: expected a whole number, found 1.5"},

@@ -44,9 +44,33 @@ TYPED_TEST(Kernels, VanishBeyondTheSupport) {
 TYPED_TEST(Kernels, GradientIsTheDerivative) {
     for (double q = 0.01; q < 1; q += 0.037) {
         const double e = 1e-6, derivative = (TypeParam::w(q + e) - TypeParam::w(q - e)) / (2 * e);
-        EXPECT_NEAR(TypeParam::norm(3) * TypeParam::gradient * TypeParam::g(q), TypeParam::norm(3) * derivative / q, 1e-6) << q;
+        EXPECT_NEAR(TypeParam::norm(3) * TypeParam::gradient(3) * TypeParam::g(q), TypeParam::norm(3) * derivative / q, 1e-6) << q;
     }
     EXPECT_TRUE(std::isfinite(TypeParam::g(0.0)));
+}
+
+// poly6 is one to its integral; the gradients are those of the spiky kernel, and the Laplacian's sums see parabolas as they are.
+TEST(Kernels, OfMuellerAreThreeOfOneNorm) {
+    using M = kernelsTest::MuellerKernel;
+    const int n = 100000;
+    const double pi = 3.14159265358979323846;
+    for (int d : {2, 3}) {
+        double poly6 = 0, spiky = 0, laplacian = 0, position = 0;
+        for (int k = 0; k < n; ++k) {
+            const double q = (k + 0.5) / n, shell = (d == 2 ? 2 * pi * q : 4 * pi * q * q) / n;
+            poly6 += shell * M::norm(d) * M::w(q);
+            position -= shell * M::norm(d) * M::gradient(d) * M::g(q) * q * q / d;   // - integral x dW/dx
+            laplacian += shell * q * q / (2 * d) * (d == 2 ? 40 : 45) / pi * M::viscous(q);   // of |x|^2 / 2d
+            spiky += shell * (d == 2 ? 10 : 15) / pi * std::pow(1 - q, 3);
+        }
+        EXPECT_NEAR(poly6, 1, 1e-8);
+        EXPECT_NEAR(spiky, 1, 1e-8);
+        EXPECT_NEAR(position, 1, 1e-8);
+        EXPECT_NEAR(laplacian, 1, 1e-8);
+        EXPECT_NEAR(M::norm(d) * M::gradient(d) * M::g(0.3) * 0.3, -3 * (d == 2 ? 10 : 15) / pi * 0.49, 1e-12);
+    }
+    EXPECT_EQ(M::w(1.5) + M::g(1.5) + M::viscous(1.5), 0);
+    EXPECT_TRUE(std::isfinite(M::g(0.0)));
 }
 
 // What sums over a lattice miss 1 by, in two and three dimensions: sum V W - 1 and -sum V x dW/dx - 1. Numbers of an independent
@@ -115,7 +139,7 @@ template <class K> void expectLattice(const LatticeRow& row) {
             for (int x = -n; x <= n; ++x) {
                 const double q = std::sqrt(double(x * x + y * y + z * z)) / R;
                 sum += K::norm(row.dimensions) / std::pow(R, row.dimensions) * K::w(q);
-                gradient -= K::norm(row.dimensions) / std::pow(R, row.dimensions + 2) * K::gradient * K::g(q) * x * x;
+                gradient -= K::norm(row.dimensions) / std::pow(R, row.dimensions + 2) * K::gradient(row.dimensions) * K::g(q) * x * x;
             }
     // The table has four digits.
     EXPECT_NEAR(sum - 1, row.sum, 6e-4 * std::abs(row.sum)) << row.dimensions << " " << row.ratio;

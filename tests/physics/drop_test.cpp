@@ -1,0 +1,82 @@
+// Surface tension: drops are round, press with sigma / r, and swing with Rayleigh's period.
+#include "sim/simulation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace spindrift {
+namespace {
+
+constexpr double Radius = 0.1, Tension = 1, Density = 1000;
+
+Scene drop(double particles, float speed) {   // particles: along a radius; speed: of stretching at its end, m/s
+    Scene s;
+    s.compute.backend = Backend::Cpu;
+    s.simulation.formulation = Formulation::DeltaPlus, s.simulation.dimensions = 2, s.simulation.placement = StartPlaces::Relaxed;
+    s.simulation.spacing = float(Radius / particles), s.simulation.gravity = {0, 0, 0};
+    s.domain.max = {0.4f, 0.4f, 0.1f};
+    s.walls.kind = WallKind::Reflect;
+    s.fluid.viscosity = 0, s.fluid.artificialViscosity = 0.02f, s.fluid.surfaceTension = float(Tension);
+    Body& body = s.fluid.bodies[0];
+    body.shape = Shape::Cylinder, body.axis = Axis::Z, body.center = {0.2f, 0.2f, 0.05f}, body.radius = float(Radius), body.height = 0.1f;
+    body.field = Field::Stretching, body.velocity = {speed, 0, 0};
+    return s;
+}
+
+// Second moments about the middle: along x less along y, and the radius that a disc has of them; the farthest particle.
+struct Shape2 { Vec3d middle; double stretch, radius, farthest; };
+Shape2 shapeOf(const std::vector<Particle>& particles) {
+    const double each = 1 / double(particles.size());
+    Vec3d middle{};
+    double x2 = 0, y2 = 0, farthest = 0;
+    for (const Particle& p : particles) middle = middle + each * p.position;
+    for (const Particle& p : particles) {
+        const Vec3d r = p.position - middle;
+        x2 += each * r.x * r.x, y2 += each * r.y * r.y;
+        farthest = std::max(farthest, length(r));
+    }
+    return {middle, x2 - y2, std::sqrt(2 * (x2 + y2)), farthest};
+}
+
+// Rayleigh 1879, in two dimensions: omega^2 = 6 sigma / (rho r^3).
+TEST(Drop, SwingsWithRayleighsPeriod) {
+    const double period = 2 * std::numbers::pi / std::sqrt(6 * Tension / (Density * std::pow(Radius, 3)));
+    const auto simulation = makeSimulation(drop(25, 0.04f));
+    double before = 0, last = 0, half = 0;
+    while (half == 0 && last < period) {
+        simulation->step(20);
+        const double now = simulation->clock().time, stretch = shapeOf(simulation->particles()).stretch;
+        if (now > period / 8 && stretch < 0) half = last + (now - last) * before / (before - stretch);   // back at the circle
+        before = stretch, last = now;
+    }
+    std::printf("drop: period %.4f s, Rayleigh's %.4f s\n", 2 * half, period);
+    EXPECT_NEAR(2 * half, period, 0.08 * period);
+}
+
+TEST(Drop, IsRoundAndPressesAsLaplaceSays) {
+    Scene s = drop(15, 0);
+    Body& body = s.fluid.bodies[0];
+    body = {};
+    body.min = {0.12f, 0.12f, 0}, body.max = {0.28f, 0.28f, 0.1f};   // a square becomes round
+    s.fluid.viscosity = 5;
+    const auto simulation = makeSimulation(s);
+    while (simulation->clock().time < 4) simulation->step(50);
+    const std::vector<Particle> particles = simulation->particles();
+    const Shape2 shape = shapeOf(particles);
+    double pressure = 0, inside = 0;
+    for (const Particle& p : particles)
+        if (length(p.position - shape.middle) < shape.radius - supportRadius(s)) pressure += p.pressure, ++inside;
+    pressure /= inside;
+    std::printf("drop: mean pressure inside %.2f Pa, Laplace's %.2f Pa; radius %.4f m, farthest %.4f m\n", pressure, Tension / shape.radius, shape.radius,
+                shape.farthest + s.simulation.spacing / 2);
+    EXPECT_NEAR(pressure, Tension / shape.radius, 0.25 * Tension / shape.radius);
+    EXPECT_LT(std::abs(shape.stretch), 0.03 * shape.radius * shape.radius);
+    EXPECT_LT(shape.farthest + s.simulation.spacing / 2, 1.06 * shape.radius);   // a square's corners: 1.2
+    EXPECT_LT(simulation->measure().maxSpeed, 0.05);
+    EXPECT_LT(length(shape.middle - Vec3d{0.2, 0.2, 0.05}), 0.7 * Radius);   // its forces don't quite cancel
+}
+
+}  // namespace
+}  // namespace spindrift
