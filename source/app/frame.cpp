@@ -43,6 +43,8 @@ Quantity quantity(ColorBy by) {
             return {"density", "kg/m³"};
         case ColorBy::Acceleration:
             return {"acceleration", "m/s²"};
+        case ColorBy::Fluid:
+            return {"density at rest", "x the scene's"};
         case ColorBy::Id:
             return {"particle id", ""};
     }

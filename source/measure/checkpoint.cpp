@@ -15,7 +15,7 @@ namespace {
 using hdf5::Handle, hdf5::Trouble, hdf5::require;
 
 constexpr const char* Format = "spindrift checkpoint";
-constexpr int64_t Version = 2;   // 2: densities, where they are carried
+constexpr int64_t Version = 3;   // 2: densities, where they are carried; 3: bodies, of mixtures
 
 // --- numbers and texts as attributes of the file ---
 
@@ -70,6 +70,7 @@ void writeAll(hid_t file, const Scene& scene, const RunState& s) {
     writeVectors(file, "walls", "m", s.particles.walls);
     if (!s.particles.solidSizes.empty())
         writeNumbers(file, "solid sizes", std::vector<double>(s.particles.solidSizes.begin(), s.particles.solidSizes.end()));
+    if (!s.particles.bodies.empty()) hdf5::writeArray(file, "bodies", H5T_STD_U16LE, H5T_NATIVE_UINT16, s.particles.bodies.data(), {s.particles.bodies.size(), 1});
     if (!s.densities.empty()) writeFloats(file, "densities", "kg/m^3", s.densities.data(), s.densities.size(), 1);
 }
 
@@ -98,10 +99,14 @@ Checkpoint readAll(hid_t file, const std::string& path) {
     c.state.particles.velocities = readVectors(file, "velocities");
     c.state.particles.walls = readVectors(file, "walls");
     if (!c.scene.solids.empty()) readSolidSizes(file, c);
+    if (isMixture(c.scene)) c.state.particles.bodies = readArray<uint16_t>(file, "bodies", H5T_NATIVE_UINT16, 1);
     if (carriesDensity(c.scene)) c.state.densities = readArray<float>(file, "densities", H5T_NATIVE_FLOAT, 1);
     if (c.state.particles.positions.empty() || c.state.particles.velocities.size() != c.state.particles.positions.size())
         throw Trouble{"velocities"};
     if (carriesDensity(c.scene) && c.state.densities.size() != c.state.particles.positions.size()) throw Trouble{"densities"};
+    if (isMixture(c.scene) && c.state.particles.bodies.size() != c.state.particles.positions.size()) throw Trouble{"bodies"};
+    for (const uint16_t body : c.state.particles.bodies)
+        if (body >= c.scene.fluid.bodies.size()) throw Trouble{"bodies"};
     for (float rho : c.state.densities)
         if (!(std::isfinite(rho) && rho > 0)) throw Trouble{"densities"};
     for (const auto* field : {&c.state.particles.positions, &c.state.particles.velocities, &c.state.particles.walls})

@@ -24,7 +24,9 @@ double mostSoundSpeed(const Scene& scene) {
 
 // Of the cfl mode, s: a thousandth of what sound, viscosity and time.max_step allow.
 double leastStep(const Scene& scene) {
-    const double h = supportRadius(scene) / 2, nu = scene.fluid.viscosity / scene.fluid.restDensity;
+    const double h = supportRadius(scene) / 2;
+    double nu = 0;
+    for (const Body& body : scene.fluid.bodies) nu = std::max(nu, double(viscosity(scene, body)) / restDensity(scene, body));
     const double sound = scene.time.cfl * h / (4 * mostSoundSpeed(scene)), viscous = nu > 0 ? 0.125 * h * h / nu : sound;
     return 1e-3 * std::min({sound, viscous, double(scene.time.maxStep)});
 }

@@ -107,6 +107,17 @@ void checkRareForces(const Scene& scene) {
     if (alone && (mixes(scene) || f.dissipation > 0))
         refuse("fluid", fmt::format("velocity_transfer, buoyancy and dissipation are not of {}; use wcsph, delta_sph or delta_plus, or set "
                                     "them to 0", name));
+    const bool several = isMixture(scene);
+    if (several && formulation != Formulation::Wcsph && formulation != Formulation::DeltaSph)
+        refuse("fluid.bodies", fmt::format("are of several fluids, which {} does not have; use wcsph or delta_sph, or leave rest_density and "
+                                           "viscosity of the bodies out", name));
+    if (several && scene.simulation.pressureForm == PressureForm::Mean)
+        refuse("simulation.pressure_form", "mean is for one fluid; use squares");
+    if (several && f.bodies.size() > 65535) refuse("fluid.bodies", "are more than the 65535 that a mixture can have; join some");
+    for (size_t b = 0; b < f.bodies.size(); ++b)
+        if (restDensity(scene, f.bodies[b]) < 0.01f * f.restDensity || restDensity(scene, f.bodies[b]) > 100 * f.restDensity)
+            refuse(bodyPath(b) + ".rest_density", fmt::format("{} kg/m^3 is more than 100 times lighter or heavier than fluid.rest_density, {} kg/m^3; "
+                                                              "bring them closer", restDensity(scene, f.bodies[b]), f.restDensity));
     if (f.surfaceTension > 0 && formulation != Formulation::DeltaPlus)
         refuse("fluid.surface_tension", fmt::format("needs particles that are kept evenly spread, or surfaces tear themselves apart; {} does "
                                                     "not, use simulation.formulation delta_plus", name));
@@ -139,7 +150,7 @@ void checkMovingFace(const Scene& scene) {
     if (walls.velocity[axis] != 0)
         refuse("walls.velocity", fmt::format("{} = {} m/s leads out of the face; a face slides along itself", "xyz"[axis],
                                              walls.velocity[axis]));
-    if (walls.kind != WallKind::Particles || scene.fluid.viscosity <= 0 || scene.simulation.formulation == Formulation::Classic)
+    if (walls.kind != WallKind::Particles || largestViscosity(scene) <= 0 || scene.simulation.formulation == Formulation::Classic)
         refuse("walls.moving_face", "nothing sticks to it; it needs walls.kind particles, a fluid.viscosity above 0, and any "
                                     "formulation but the classic one");
 }

@@ -327,6 +327,19 @@ bool carriesDensity(const Scene& scene) {
     return scene.simulation.formulation == Formulation::DeltaSph || shiftsParticles(scene);
 }
 
+float restDensity(const Scene& scene, const Body& body) { return body.restDensity > 0 ? body.restDensity : scene.fluid.restDensity; }
+float viscosity(const Scene& scene, const Body& body) { return body.viscosity >= 0 ? body.viscosity : scene.fluid.viscosity; }
+bool isMixture(const Scene& scene) {
+    return std::any_of(scene.fluid.bodies.begin(), scene.fluid.bodies.end(), [&](const Body& b) {
+        return restDensity(scene, b) != scene.fluid.restDensity || viscosity(scene, b) != scene.fluid.viscosity;
+    });
+}
+float largestViscosity(const Scene& scene) {
+    float most = 0;
+    for (const Body& body : scene.fluid.bodies) most = std::max(most, viscosity(scene, body));
+    return most;
+}
+
 bool mixes(const Scene& scene) {
     return scene.fluid.velocityTransfer > 0 || scene.fluid.buoyancy > 0;
 }
@@ -365,9 +378,13 @@ Placement placeParticles(const Scene& scene) {
         out.positions.push_back(toFloat(place.at));
         out.velocities.push_back(toFloat(start.velocity));
         out.pressures.push_back(float(start.pressure));
+        out.bodies.push_back(uint16_t(place.body));
     }
-    for (const Body& body : scene.fluid.bodies)
-        if (body.shape == Shape::File) placeFile(scene, body, out);
+    for (size_t b = 0; b < lattices.size(); ++b) {
+        if (scene.fluid.bodies[b].shape == Shape::File) placeFile(scene, scene.fluid.bodies[b], out);
+        out.bodies.resize(out.positions.size(), uint16_t(b));
+    }
+    if (!isMixture(scene)) out.bodies = {};
     if (!out.densities.empty()) out.densities.resize(out.positions.size());
     for (const Solid& solid : scene.solids) {
         const std::vector<Vec3> points = sampleSolid(scene, solid).positions;

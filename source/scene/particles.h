@@ -15,6 +15,7 @@ struct Placement {
     std::vector<float> pressures;
     std::vector<int> solidSizes;
     std::vector<float> densities{};   // kg/m^3, 0 where the pressure says; none at all where no file had any
+    std::vector<uint16_t> bodies{};   // of a mixture: which body each particle is of
 };
 
 // Where the fluid is at the start, m from the domain's corner, and how fast, m/s.

@@ -21,7 +21,7 @@ enum class TimeMode { Fixed, Cfl, Local };
 enum class Integrator { SymplecticEuler, VelocityVerlet, PredictorCorrector };
 enum class Shape { Block, Sphere, Cylinder, Wedge, File };
 enum class Axis { X, Y, Z };
-enum class ColorBy { Plain, Velocity, Pressure, Density, Acceleration, Id };
+enum class ColorBy { Plain, Velocity, Pressure, Density, Acceleration, Id, Fluid };
 enum class Field { Uniform, TaylorGreen, Stretching, Rotation, Shear, SoundWave };
 enum class StartPlaces { Lattice, Relaxed };
 enum class StartPressure { None, Hydrostatic };
@@ -45,6 +45,8 @@ struct Form {
 struct Body : Form {
     Vec3 velocity{0, 0, 0};                     // m/s; for a field its amplitude is the length
     Field field = Field::Uniform;               // of velocity at the start
+    float restDensity = 0;                      // kg/m^3 at rest, 0 = the fluid's; other ones make a mixture
+    float viscosity = -1;                       // Pa s, -1 = the fluid's
     StartPressure pressure = StartPressure::None;   // where a field has its own, that is added
     std::string path{};                         // of a file, beside the scene file when relative
 };
@@ -216,6 +218,13 @@ float particleMass(const Scene&);               // kg; in two dimensions of a sl
 bool carriesDensity(const Scene&);
 // Whether there is velocity transfer or buoyancy.
 bool mixes(const Scene&);
+// Of a body at rest, kg/m^3, and of its fluid, Pa s: its own, or those of all.
+float restDensity(const Scene&, const Body&);
+float viscosity(const Scene&, const Body&);
+// Whether its bodies are of more than one fluid.
+bool isMixture(const Scene&);
+// The most of all fluids, Pa s.
+float largestViscosity(const Scene&);
 // Whether particles move a little beside the fluid, to stay evenly spread.
 bool shiftsParticles(const Scene&);
 

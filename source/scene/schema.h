@@ -38,7 +38,7 @@ constexpr auto enumNames(Integrator) {
 constexpr auto enumNames(Shape) { return std::array{"block", "sphere", "cylinder", "wedge", "file"}; }
 constexpr auto enumNames(Axis) { return std::array{"x", "y", "z"}; }
 constexpr auto enumNames(ColorBy) {
-    return std::array{"plain", "velocity", "pressure", "density", "acceleration", "id"};
+    return std::array{"plain", "velocity", "pressure", "density", "acceleration", "id", "fluid"};
 }
 constexpr auto enumNames(ColorMap) { return std::array{"viridis", "cividis", "turbo", "coolwarm"}; }
 constexpr auto enumNames(Field) {
@@ -77,6 +77,9 @@ template <class B, class Visitor>
 requires std::is_same_v<std::remove_const_t<B>, Body>
 void visitMember(B& b, const std::string& at, Visitor&& visit) {
     visitForm(b, at, visit);
+    visit(at + ".rest_density", b.restDensity,
+          Knob{"kg/m^3", 0, 1e5f, "of this body's fluid, 0 = fluid.rest_density; with another one fluids lie above each other", Restart});
+    visit(at + ".viscosity", b.viscosity, Knob{"Pa s", -1, 1000, "of this body's fluid, -1 = fluid.viscosity", Restart});
     if (b.shape == Shape::File) {
         visit(at + ".path", b.path,
               Knob{"", 0, 0,

@@ -40,7 +40,7 @@ double hydrostatic(const Scene& scene, const Body& body, Vec3d r) {
     const Vec3d g = toDouble(scene.simulation.gravity), half = halfExtent(body);
     double head = 0;   // m^2/s^2
     for (int k = 0; k < scene.simulation.dimensions; ++k) head += g[k] * r[k] + std::abs(g[k]) * half[k];
-    return scene.fluid.restDensity * head;
+    return double(restDensity(scene, body)) * head;
 }
 
 Vec3d centerOf(const Scene& scene, const Body& body) { return convexOf(body, 3).middle - toDouble(scene.domain.min); }

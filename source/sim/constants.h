@@ -92,12 +92,24 @@ inline void addRareForces(const Scene& s, double mass, Constants& c) {
     c.wind = toVector(s.fluid.wind);
 }
 
+// Rest densities of the fluids / the scene's.
+struct Ratios { double least = 1, most = 1; };
+inline Ratios densityRatios(const Scene& s) {
+    Ratios r{1e30, 0};
+    for (const Body& body : s.fluid.bodies) {
+        const double ratio = double(restDensity(s, body)) / s.fluid.restDensity;
+        r.least = std::min(r.least, ratio), r.most = std::max(r.most, ratio);
+    }
+    return r;
+}
+
 // What forces but pressure allow, s: viscosity (Morris 1997), surface tension (Brackbill 1992), exchanged velocity.
 inline double longestStep(const Scene& s) {
     const Fluid& f = s.fluid;
     const double h = supportRadius(s) / 2, rho0 = f.restDensity, pi = 3.14159265358979323846;
     double step = 1e9;
-    if (f.viscosity > 0) step = 0.125 * h * h * rho0 / f.viscosity;
+    for (const Body& body : f.bodies)
+        if (viscosity(s, body) > 0) step = std::min(step, 0.125 * h * h * restDensity(s, body) / (viscosity(s, body) * (isMixture(s) ? 2 : 1)));
     if (f.surfaceTension > 0) step = std::min(step, 0.25 * std::sqrt(rho0 * h * h * h / (2 * pi * f.surfaceTension)));
     if (f.velocityTransfer > 0) step = std::min(step, 0.5 / f.velocityTransfer);
     return step;
@@ -120,8 +132,11 @@ template <class Kernel> Constants makeConstants(const Scene& s, const FluidExten
     c.gradientScale = real(mass * Kernel::gradient(d) * Kernel::norm(d) / std::pow(R, d + 2) * sums.kernel / sums.gradient);
 
     c.gamma = linear ? 1 : s.fluid.gamma;
-    const double sound = soundSpeed(s, fluid);
+    // All fluids have one stiffness, so that pressure is the same on both sides of where they meet; the heaviest has the scene's speed of sound.
+    const Ratios ratios = densityRatios(s);
+    const double sound = soundSpeed(s, fluid) * (s.fluid.stiffness > 0 ? 1 : std::sqrt(ratios.most));
     c.stiffness = real(rho0 * sound * sound / c.gamma);
+    c.fastestSound = real(sound / std::sqrt(ratios.least));
     c.backgroundPressure = real(s.fluid.backgroundPressure);
     c.soundSpeed = real(sound);
 
@@ -130,7 +145,7 @@ template <class Kernel> Constants makeConstants(const Scene& s, const FluidExten
     c.shifting = real(s.fluid.shifting * 2 * h);
     c.shiftWeight = 1 / Kernel::w(real(1 / s.simulation.support));
     c.dimensions = d, c.flatMoment = d == 2 ? 1 : 0;
-    c.laminar = real(2 * s.fluid.viscosity * (sums.gradient / sums.viscous));
+    c.laminar = real(2 * (isMixture(s) ? 1 : double(s.fluid.viscosity)) * (sums.gradient / sums.viscous));
     c.artificial = real(s.fluid.artificialViscosity * sound * h / 2);
     c.classicViscosity = real(s.fluid.viscosity * particleMass(s) / (rho0 * 3.14159265358979323846 * std::pow(R, 5)) / c.gradientScale);
     addRareForces(s, mass, c);

@@ -7,6 +7,7 @@
 namespace spindrift::LANES {
 
 HD inline real magnitude(Vector<real> a) { return squareRoot(dot(a, a)); }
+HD inline real densityOf(const Particles& p, int i) { return massRatio(p, i) * load(p.density, i); }
 HD inline real pressureOf(const Particles& p, int i) {
     return load(p.pressureTerm, i) * load(p.density, i) * load(p.density, i);
 }
@@ -15,8 +16,9 @@ HD inline real pressureOf(const Particles& p, int i) {
 struct PlainValue { HD static real of(const Particles&, int) { return 0; } };
 struct SpeedValue { HD static real of(const Particles& p, int i) { return magnitude(load(p.velocity, i)); } };
 struct AccelerationValue { HD static real of(const Particles& p, int i) { return magnitude(load(p.acceleration, i)); } };
-struct DensityValue { HD static real of(const Particles& p, int i) { return load(p.density, i); } };
+struct DensityValue { HD static real of(const Particles& p, int i) { return densityOf(p, i); } };
 struct PressureValue { HD static real of(const Particles& p, int i) { return pressureOf(p, i); } };
+struct FluidValue { HD static real of(const Particles& p, int i) { return massRatio(p, i); } };
 struct IdValue { HD static real of(const Particles& p, int i) { return real(p.id[i]); } };
 
 struct ValueRange {
@@ -67,15 +69,15 @@ template <class Value> struct CountValues {
 
 // Sums over the fluid, in double precision.
 struct Totals {
-    double speed2 = 0, density = 0, compression = 0, position2 = 0;
+    double mass = 0, speed2 = 0, density = 0, compression = 0, position2 = 0;   // in masses of the scene's fluid: all but densities
     double velocity[3] = {0, 0, 0}, position[3] = {0, 0, 0};
-    double maxSpeed2 = 0, maxDensity = 0;
+    double maxSpeed2 = 0, maxRatio = 0;   // density / that at rest
     int64_t notFinite = 0;
     HD_OUT void add(const Totals& o) {
-        speed2 += o.speed2, density += o.density, compression += o.compression, position2 += o.position2;
+        mass += o.mass, speed2 += o.speed2, density += o.density, compression += o.compression, position2 += o.position2;
         for (int k = 0; k < 3; ++k) velocity[k] += o.velocity[k], position[k] += o.position[k];
         maxSpeed2 = o.maxSpeed2 > maxSpeed2 ? o.maxSpeed2 : maxSpeed2;
-        maxDensity = o.maxDensity > maxDensity ? o.maxDensity : maxDensity;
+        maxRatio = o.maxRatio > maxRatio ? o.maxRatio : maxRatio;
         notFinite += o.notFinite;
     }
 };
@@ -85,15 +87,15 @@ struct SumUp {
     HD void addTo(Totals& t, int i) const {
         if (p.id[i] < 0) return;
         const Vector<real> x = load(p.position, i), u = load(p.velocity, i);
-        const double rho = load(p.density, i), excess = rho / restDensity - 1;
+        const double mass = massRatio(p, i), ratio = load(p.density, i) / restDensity, excess = ratio - 1, rho = densityOf(p, i);
         const double ux = u.x, uy = u.y, uz = u.z, speed2 = ux * ux + uy * uy + uz * uz;
         Totals one;
-        one.speed2 = one.maxSpeed2 = speed2;
-        one.density = one.maxDensity = rho;
+        one.mass = mass, one.speed2 = mass * speed2, one.maxSpeed2 = speed2;
+        one.density = rho, one.maxRatio = ratio;
         one.compression = excess > 0 ? excess : 0;
-        one.velocity[0] = ux, one.velocity[1] = uy, one.velocity[2] = uz;
-        one.position[0] = x.x, one.position[1] = x.y, one.position[2] = x.z;
-        one.position2 = double(x.x) * x.x + double(x.y) * x.y + double(x.z) * x.z;
+        one.velocity[0] = mass * ux, one.velocity[1] = mass * uy, one.velocity[2] = mass * uz;
+        one.position[0] = mass * x.x, one.position[1] = mass * x.y, one.position[2] = mass * x.z;
+        one.position2 = mass * (double(x.x) * x.x + double(x.y) * x.y + double(x.z) * x.z);
         const double sum = speed2 + rho + double(x.x) + double(x.y) + double(x.z);
         one.notFinite = sum - sum == 0 ? 0 : 1;
         t.add(one);

@@ -24,7 +24,7 @@ public:
         return {slots_, id_.data(), {position_.data()}, {velocity_.data()}, {acceleration_.data()}, {addedForce_.data()}, {normal_.data()}, {normalLength_.data()},
                 {density_.data()}, {inverseDensity_.data()}, {pressureTerm_.data()}, {mass_.data()}, {outward_.data()}, {ownVelocity_.data()},
                 {densityRate_.data()}, {shiftVelocity_.data()}, {shiftAcceleration_.data()},
-                {kept_.position.data()}, {kept_.velocity.data()}, {kept_.density.data()}, {level_.data()}, due_.data()};
+                {kept_.position.data()}, {kept_.velocity.data()}, {kept_.density.data()}, {massRatio_.data()}, {viscosity_.data()}, {level_.data()}, due_.data()};
     }
 
     // Takes over particles with ids firstId, firstId + 1, ...; boundary particles have no velocities. Densities only where they
@@ -48,6 +48,19 @@ public:
         device_.upload(id_.data(), id.data(), id.size());
     }
 
+    // What each particle of a mixture is, by ids from 0 on: see View.
+    void fillMixture(const std::vector<float>& massRatios, const std::vector<float>& viscosities) {
+        mixture_ = true;
+        resize(slots_);
+        if (sortedId_.size() > 0) resizeSorted(slots_);   // a recorded sort can't make room
+        const std::vector<int> id = copy(id_);
+        std::vector<real> ratio(slots_, 1), mu(slots_, 0);
+        for (int i = 0; i < slots_; ++i)
+            if (id[i] >= 0) ratio[i] = massRatios[id[i]], mu[i] = viscosities[id[i]];
+        device_.upload(massRatio_.data(), ratio.data(), ratio.size());
+        device_.upload(viscosity_.data(), mu.data(), mu.size());
+    }
+
     // Particles of one cell end up beside each other, cells of one row too.
     void sort(const Grid& grid) {
         const int rows = grid.cells.y * grid.cells.z;
@@ -65,6 +78,8 @@ public:
         sorted.keptPosition = {sortedKept_.position.data()};
         sorted.keptVelocity = {sortedKept_.velocity.data()};
         sorted.keptDensity = {sortedKept_.density.data()};
+        sorted.massRatio = {sortedMassRatio_.data()};
+        sorted.viscosity = {sortedViscosity_.data()};
         sorted.level = {sortedLevel_.data()};
         sorted.acceleration = {sortedAcceleration_.data()};
         sorted.densityRate = {sortedDensityRate_.data()};
@@ -80,6 +95,7 @@ public:
         if (kind_ == Kind::Fluid) velocity_.swap(sortedVelocity_);
         if (sortsDensity()) density_.swap(sortedDensity_);
         if (hasLevels()) level_.swap(sortedLevel_), acceleration_.swap(sortedAcceleration_), densityRate_.swap(sortedDensityRate_);
+        massRatio_.swap(sortedMassRatio_), viscosity_.swap(sortedViscosity_);
         kept_.position.swap(sortedKept_.position);
         kept_.velocity.swap(sortedKept_.velocity);
         kept_.density.swap(sortedKept_.density);
@@ -144,8 +160,8 @@ public:
     std::vector<Particle> download(int count, Vec3 origin) const {
         std::vector<int> id = copy(id_);
         std::vector<real> x = copy(position_), u = copy(velocity_), a = copy(acceleration_);
-        std::vector<real> rho = copy(density_), term = copy(pressureTerm_);
-        const Particles host = onHost(slots_, id, x, u, a, rho, term);
+        std::vector<real> rho = copy(density_), term = copy(pressureTerm_), ratio = copy(massRatio_);
+        const Particles host = onHost(slots_, id, x, u, a, rho, term, ratio);
         std::vector<Particle> out(count);
         for (int i = 0; i < slots_; ++i)
             if (id[i] >= 0) out[id[i]] = describe(host, i, origin);
@@ -160,9 +176,10 @@ public:
         auto vectors = [&](const Buffer<real, Device>& b) { return copy(b, vectorOffset(first, 0), vectorSize(clusterSize)); };
         auto numbers = [&](const Buffer<real, Device>& b) { return copy(b, size_t(first), size_t(clusterSize)); };
         std::vector<real> x = vectors(position_), u = vectors(velocity_), a = vectors(acceleration_);
-        std::vector<real> rho = numbers(density_), term = numbers(pressureTerm_);
+        std::vector<real> rho = numbers(density_), term = numbers(pressureTerm_), ratio;
+        if (mixture_) ratio = numbers(massRatio_);
         std::vector<int> own(ids.begin() + first, ids.begin() + first + clusterSize);
-        const Particles host = onHost(clusterSize, own, x, u, a, rho, term);
+        const Particles host = onHost(clusterSize, own, x, u, a, rho, term, ratio);
         return describe(host, slot - first, origin);
     }
 
@@ -186,6 +203,7 @@ private:
         if (hasNormals_) normal_.resize(vectorSize(slots)), normalLength_.resize(slots);
         inverseDensity_.resize(slots);
         if (carriesDensity_) densityRate_.resize(slots);
+        if (mixture_) massRatio_.resize(slots), viscosity_.resize(slots);
         if (shifts_)
             for (auto* field : {&shiftVelocity_, &shiftAcceleration_}) field->resize(vectorSize(slots));
         if (stepsLocally_) level_.resize(slots);
@@ -196,6 +214,7 @@ private:
         sortedPosition_.resize(vectorSize(slots));
         if (kind_ == Kind::Fluid) sortedVelocity_.resize(vectorSize(slots));
         if (sortsDensity()) sortedDensity_.resize(slots);
+        if (mixture_) sortedMassRatio_.resize(slots), sortedViscosity_.resize(slots);
         if (hasLevels()) sortedLevel_.resize(slots), sortedAcceleration_.resize(vectorSize(slots));
         if (hasLevels() && carriesDensity_) sortedDensityRate_.resize(slots);
         resizeKept(sortedKept_, slots);
@@ -212,17 +231,17 @@ private:
         if (keepsState_ && carriesDensity_) kept.density.resize(slots);
     }
     static Particles onHost(int slots, std::vector<int>& id, std::vector<real>& x, std::vector<real>& u, std::vector<real>& a,
-                            std::vector<real>& rho, std::vector<real>& term) {
+                            std::vector<real>& rho, std::vector<real>& term, std::vector<real>& ratio) {
         Particles p{};
         p.slots = slots, p.id = id.data();
         p.position = {x.data()}, p.velocity = {u.data()}, p.acceleration = {a.data()};
-        p.density = {rho.data()}, p.pressureTerm = {term.data()};
+        p.density = {rho.data()}, p.pressureTerm = {term.data()}, p.massRatio = {ratio.empty() ? nullptr : ratio.data()};
         return p;
     }
     static Particle describe(const Particles& host, int i, Vec3 origin) {
         auto toVec3d = [](Vector<real> v) { return Vec3d{double(v.x), double(v.y), double(v.z)}; };
         return {host.id[i], toVec3d(load(host.position, i)) + toDouble(origin), toVec3d(load(host.velocity, i)),
-                toVec3d(load(host.acceleration, i)), double(load(host.density, i)), double(pressureOf(host, i))};
+                toVec3d(load(host.acceleration, i)), double(densityOf(host, i)), double(pressureOf(host, i))};
     }
     std::vector<Vec3> inOrder(const Buffer<real, Device>& field, int count, int firstId) const {
         std::vector<real> values = copy(field);
@@ -245,13 +264,14 @@ private:
     Device& device_;
     Kind kind_;
     bool carriesVelocity_ = kind_ == Kind::Fluid, hasDensity_ = kind_ == Kind::Fluid, carriesDensity_ = false, shifts_ = false,
-         moves_ = false, keepsVelocity_ = false, keepsState_ = false, stepsLocally_ = false, addsPairs_ = false, hasNormals_ = false;
+         moves_ = false, keepsVelocity_ = false, keepsState_ = false, stepsLocally_ = false, addsPairs_ = false, hasNormals_ = false, mixture_ = false;
     int slots_ = 0, side_ = 0;
     Buffer<int, Device> id_{device_}, sortedId_{device_}, key_{device_}, order_{device_}, cellStart_{device_};
     Buffer<real, Device> position_{device_}, velocity_{device_}, acceleration_{device_}, addedForce_{device_}, normal_{device_}, normalLength_{device_};
     Buffer<real, Device> sortedPosition_{device_}, sortedVelocity_{device_}, sortedDensity_{device_};
     Buffer<real, Device> densityRate_{device_}, shiftVelocity_{device_}, shiftAcceleration_{device_};
     Kept kept_{device_}, sortedKept_{device_};
+    Buffer<real, Device> massRatio_{device_}, viscosity_{device_}, sortedMassRatio_{device_}, sortedViscosity_{device_};
     Buffer<uint8_t, Device> due_{device_};
     Buffer<real, Device> level_{device_}, sortedLevel_{device_}, sortedAcceleration_{device_}, sortedDensityRate_{device_};
     Buffer<real, Device> density_{device_}, inverseDensity_{device_}, pressureTerm_{device_}, mass_{device_}, outward_{device_},

@@ -42,6 +42,8 @@ struct Reorder {
         if (to.level.data && to.densityRate.data) store(to.densityRate, i, s < 0 ? real(0) : load(from.densityRate, s));
         if (to.velocity.data) store(to.velocity, i, s < 0 ? Vector<real>{0, 0, 0} : load(from.velocity, s));
         if (to.density.data) store(to.density, i, s < 0 ? real(0) : load(from.density, s));
+        if (to.massRatio.data) store(to.massRatio, i, s < 0 ? real(1) : load(from.massRatio, s));
+        if (to.viscosity.data) store(to.viscosity, i, s < 0 ? real(0) : load(from.viscosity, s));
         if (to.keptPosition.data) store(to.keptPosition, i, s < 0 ? Vector<real>{far, far, far} : load(from.keptPosition, s));
         if (to.keptVelocity.data) store(to.keptVelocity, i, s < 0 ? Vector<real>{0, 0, 0} : load(from.keptVelocity, s));
         if (to.keptDensity.data) store(to.keptDensity, i, s < 0 ? real(0) : load(from.keptDensity, s));
@@ -135,7 +137,8 @@ template <class Kernel, bool sticks, bool dense> struct ExtrapolateToWalls {
         Vector<R> velocity{0, 0, 0};
         forNeighbours<Lists::All>(v, v.fluidNearWalls, b, x, [&](const auto& p, Four j) LANE_CALL {
             const R rho = load(v.fluid.density, j), w = Kernel::w(p.q);
-            pressure = mulAdd(w * rho, mulAdd(rho, load(v.fluid.pressureTerm, j), dot(force, p.r)), pressure);
+            const R pull = v.fluid.massRatio.data ? load(v.fluid.massRatio, j) * dot(force, p.r) : dot(force, p.r);
+            pressure = mulAdd(w * rho, mulAdd(rho, load(v.fluid.pressureTerm, j), pull), pressure);
             weight += w;
             if constexpr (sticks) {
                 velocity = addScaled(velocity, w, load(v.fluid.velocity, j));
@@ -211,7 +214,7 @@ template <class Kernel, Lists which, class... Terms, Forces role> struct Compute
         forNeighbours<lists>(v, v.wallsNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
             (Terms::addWall(v.c, p, weights<Kernel>(p.q), own, loadWall<needs>(v.walls, j), a), ...);
         });
-        const R scale = v.c.gradientScale;
+        const R scale = v.fluid.massRatio.data ? R(v.c.gradientScale) / load(v.fluid.massRatio, i) : R(v.c.gradientScale);
         Vector<R> pressure = scale * (whole + total(a.pressure)), other = scale * total(a.other);
         if constexpr (needs & Moments) {
             const Correction<R> correction(v.c, total(a.moments));
@@ -252,7 +255,7 @@ template <class Kernel> struct ComputeDensityRate {
         const Vector<real> gravity = gravityNow(v);
         const Vector<R> x = load(v.fluid.position, i), u = load(v.fluid.velocity, i);
         const R rho = load(v.fluid.density, i), diffusion = v.c.diffusion;
-        const Vector<R> slope = hydrostaticSlope(v.c, gravity, x);
+        const Vector<R> slope = massRatio(v.fluid, i) * hydrostaticSlope(v.c, gravity, x);
         R sum = 0;
         forNeighbours<Lists::Pruned>(v, v.fluidNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
             const R approach = rho * dot(u - load(v.fluid.velocity, j), p.r);
@@ -389,7 +392,7 @@ template <bool volume> struct FindExtremes {
 };
 
 // Courant's limit, s.
-HD inline real acousticStep(const Constants& c, real speed) { return c.cfl * (c.support / 2) / (c.soundSpeed + max(speed, c.solidSpeed)); }
+HD inline real acousticStep(const Constants& c, real speed) { return c.cfl * (c.support / 2) / (c.fastestSound + max(speed, c.solidSpeed)); }
 // A step is shorter where whole ones would miss the time at which the run stops.
 HD inline double untilStop(const StepState& s, double dt) {
     const double left = s.stop - s.time;
@@ -435,7 +438,7 @@ struct ResistMotion {
         const Vector<R> u = load(v.fluid.velocity, i), wind{v.c.wind.x, v.c.wind.y, v.c.wind.z}, past = u - wind;
         const R hidden = (load(v.fluid.density, i) * R(1 / v.c.restDensity) - R(v.c.aloneDensity)) * R(1 / (1 - v.c.aloneDensity));
         const R exposed = R(1) - min(max(hidden, R(0)), R(1));
-        const R drag = R(v.c.airDrag) * exposed * squareRoot(dot(past, past));
+        const R drag = R(v.c.airDrag) * exposed * squareRoot(dot(past, past)) / massRatio(v.fluid, i);
         store(v.fluid.acceleration, i, subtractScaled(subtractScaled(load(v.fluid.acceleration, i), R(v.c.dissipation), u), drag, past));
     }
 };

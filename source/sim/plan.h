@@ -113,6 +113,10 @@ template <class Device> template <class K> auto SimulationOn<Device>::forcePass(
     if (fillsSpace())
         return *LaminarViscosity::skipped(scene_) ? forces<K, Lists::Prune>(TermList<CorrectedPressureForce>{})
                                                   : forces<K, Lists::Prune>(TermList<CorrectedPressureForce, LaminarViscosity>{});
+    if (isMixture(scene_)) {
+        using Terms = TermList<PressureForce, MixtureViscosity>;
+        return carriesDensity(scene_) ? forces<K, Lists::Prune>(Terms{}) : pairPass<ComputeForces<K, Lists::Pruned, Terms>>();
+    }
     if (carriesDensity(scene_))
         return chooseTerms(scene_, [](auto terms) { return forces<K, Lists::Prune>(terms); }, TermList<PressureForce>{}, Viscosities{});
     if (scene_.simulation.formulation == Formulation::Classic)
@@ -127,6 +131,8 @@ template <class Device> template <class K> auto SimulationOn<Device>::forcePass(
 // What fluid does to solids, by the terms that act on the fluid. (Corrected gradients have no opposite: their pressure is taken as it is
 // without.)
 template <class Device> template <class K> auto SimulationOn<Device>::loadPass() const {
+    using Mixed = TermList<PressureForce, MixtureViscosity>;
+    if (isMixture(scene_)) return &SimulationOn::template loads<ComputeWallLoads<K, Mixed>>;
     return chooseTerms(scene_, [](auto terms) { return &SimulationOn::template loads<ComputeWallLoads<K, decltype(terms)>>; },
                        TermList<PressureForce>{}, Viscosities{});
 }

@@ -26,7 +26,7 @@ public:
     SimulationOn(const Scene& scene, const RunState& state, Device device, std::string deviceName)
         : device_(std::move(device)), deviceName_(std::move(deviceName)), scene_(scene),
           fluidCount_(int(state.particles.positions.size())), wallCount_(int(state.particles.walls.size())),
-          wallsAtHome_(state.particles.walls), solidSizes_(state.particles.solidSizes),
+          bodies_(state.particles.bodies), wallsAtHome_(state.particles.walls), solidSizes_(state.particles.solidSizes),
           extent_(state.start), grid_(makeGrid(scene, size_t(fluidCount_) + size_t(wallCount_))) {
         if (carriesDensity(scene)) fluid_.carryDensity();
         if (shifts()) fluid_.shift(), walls_.haveDensity();
@@ -45,6 +45,7 @@ public:
     void restart(const RunState& state) override {
         CHECK(int(state.particles.positions.size()) == fluidCount_);
         fluid_.upload(state.particles.positions, state.particles.velocities, densitiesOf(state), 0);
+        fillMixture();
         StepState clock = state.clock;
         clock.speed = 0;   // a checkpoint doesn't know it
         device_.upload(clock_.data(), &clock, 1);
@@ -58,6 +59,7 @@ public:
 
     void apply(const Scene& scene) override {
         refresh(scene);
+        fillMixture();
         wake();
     }
     void stir(const Stir& s) override {
@@ -99,7 +101,7 @@ public:
     }
     RunState state() override {
         RunState s;
-        s.particles = {fluid_.positions(fluidCount_, 0), fluid_.velocities(fluidCount_, 0), wallsAtHome_, {}, solidSizes_};
+        s.particles = {fluid_.positions(fluidCount_, 0), fluid_.velocities(fluidCount_, 0), wallsAtHome_, {}, solidSizes_, {}, bodies_};
         s.clock = clock();
         s.start = extent_;
         s.densities = fluid_.densities(fluidCount_);
@@ -139,6 +141,17 @@ private:
         PassTime* time = nullptr;
     };
 
+    // A mixture's knobs, particle by particle.
+    void fillMixture() {
+        if (!isMixture(scene_) || fluid_.slots() == 0) return;
+        CHECK(int(bodies_.size()) == fluidCount_);
+        std::vector<float> ratios, viscosities;
+        for (const uint16_t body : bodies_) {
+            ratios.push_back(restDensity(scene_, scene_.fluid.bodies[body]) / scene_.fluid.restDensity);
+            viscosities.push_back(viscosity(scene_, scene_.fluid.bodies[body]));
+        }
+        fluid_.fillMixture(ratios, viscosities);
+    }
     void refresh(const Scene& scene) {
         const bool before = pairsOnce();
         scene_ = scene;
@@ -189,7 +202,7 @@ private:
     bool hasLocalSteps() const { return scene_.time.mode == TimeMode::Local; }
     bool shifts() const { return shiftsParticles(scene_); }
     bool fillsSpace() const { return scene_.simulation.formulation == Formulation::TransportVelocity; }
-    bool fluidSticks() const { return wallsCarryPressure() && !*LaminarViscosity::skipped(scene_); }
+    bool fluidSticks() const { return wallsCarryPressure() && largestViscosity(scene_) > 0; }
     template <class... Ts> void noteTerms(TermList<Ts...>) {
         (rows_.push_back({std::string("forces: ") + Ts::name, Ts::skipped(scene_)}), ...);
     }
@@ -237,6 +250,8 @@ private:
     std::vector<float> densitiesOf(const RunState& state) const {
         if (!carriesDensity(scene_) || !state.densities.empty()) return state.densities;
         std::vector<float> densities = state.particles.densities;
+        for (size_t i = 0; i < densities.size() && !bodies_.empty(); ++i)   // those of the scene's fluid
+            densities[i] *= scene_.fluid.restDensity / restDensity(scene_, scene_.fluid.bodies[bodies_[i]]);
         for (size_t i = 0; i < state.particles.pressures.size(); ++i) {
             const double power = std::max(1 + double(state.particles.pressures[i]) / constants_.stiffness, 0.1);
             const float density = float(constants_.restDensity * std::pow(power, 1.0 / constants_.gamma));
@@ -394,6 +409,7 @@ private:
             case ColorBy::Density: return write<DensityValue>(v.fluid, out);
             case ColorBy::Acceleration: return write<AccelerationValue>(v.fluid, out);
             case ColorBy::Id: return write<IdValue>(v.fluid, out);
+            case ColorBy::Fluid: return write<FluidValue>(v.fluid, out);
         }
         return {0, 0};
     }
@@ -416,6 +432,7 @@ private:
     Scene scene_;
     Stir stir_;
     int fluidCount_, wallCount_;
+    std::vector<uint16_t> bodies_;    // of a mixture: which one each particle is of
     std::vector<Vec3> wallsAtHome_;   // as in Placement
     std::vector<int> solidSizes_;
     FluidExtent extent_;
@@ -448,11 +465,11 @@ private:
 template <class Device> Measurement SimulationOn<Device>::measure() {
     const Totals t = device_.template sum<Totals>(fluid_.slots(), SumUp{fluid_.view(), scene_.fluid.restDensity});
     const StepState state = clock();
-    const double n = fluidCount_, mass = particleMass(scene_), rho0 = scene_.fluid.restDensity;
+    const double count = fluidCount_, n = t.mass, mass = particleMass(scene_);   // n particles of the scene's fluid are as heavy
     const Vec3d center = (1 / n) * Vec3d{t.position[0], t.position[1], t.position[2]};
     Measurement m;
     m.time = state.time, m.dt = hasLocalSteps() ? state.longest : state.dt, m.steps = state.steps;
-    m.evaluations = hasLocalSteps() ? state.evaluations : n * double(state.steps);
+    m.evaluations = hasLocalSteps() ? state.evaluations : count * double(state.steps);
     m.kineticEnergy = mass * t.speed2 / 2;
     m.potentialEnergy = mass * n * dot(-1.0 * toDouble(scene_.simulation.gravity), center) + 0.0;   // no minus zero
     const Vec3d middle = 0.5 * toDouble(scene_.domain.max - scene_.domain.min);
@@ -460,9 +477,9 @@ template <class Device> Measurement SimulationOn<Device>::measure() {
     m.potentialEnergy += pull * mass / 2 * (t.position2 - 2 * n * dot(center, middle) + n * dot(middle, middle));
     m.momentum = mass * Vec3d{t.velocity[0], t.velocity[1], t.velocity[2]};
     m.centerOfMass = center + toDouble(scene_.domain.min);
-    m.meanDensity = t.density / n;
-    m.densityError = t.compression / n;
-    m.maxDensityError = t.maxDensity / rho0 - 1;
+    m.meanDensity = t.density / count;
+    m.densityError = t.compression / count;
+    m.maxDensityError = t.maxRatio - 1;
     m.maxSpeed = std::sqrt(t.maxSpeed2);
     m.soundSpeed = constants_.soundSpeed;
     m.finite = t.notFinite == 0;

@@ -10,18 +10,23 @@
 
 namespace spindrift::LANES {
 
-enum Needs : unsigned { Velocity = 1, InverseDensity = 2, WallVelocity = 4, Pressure = 8, OwnVelocity = 16, Density = 32, Moments = 64 };
+enum Needs : unsigned { Velocity = 1, InverseDensity = 2, WallVelocity = 4, Pressure = 8, OwnVelocity = 16, Density = 32, Moments = 64,
+                        Mixture = 128 };
 
 // What terms read of one particle.
-template <class R> struct State { Vector<R> velocity; R pressureTerm, inverseDensity, pressure, density; };
+template <class R> struct State { Vector<R> velocity; R pressureTerm, inverseDensity, pressure, density, massRatio, viscosity; };
 
 template <unsigned needs, class I> HD inline State<Real<I>> loadState(const Particles& p, I i) {
     State<Real<I>> s;
     s.pressureTerm = load(p.pressureTerm, i);
     if constexpr (needs & Velocity) s.velocity = load(p.velocity, i);
     if constexpr (needs & InverseDensity) s.inverseDensity = load(p.inverseDensity, i);
-    if constexpr (needs & (Pressure | Density)) s.density = load(p.density, i);
-    if constexpr (needs & Pressure) s.pressure = s.pressureTerm * s.density * s.density;
+    if constexpr (needs & Pressure) {
+        const Real<I> rho = load(p.density, i);
+        s.pressure = s.pressureTerm * rho * rho;
+    }
+    if constexpr (needs & Density) s.density = massRatio(p, i) * load(p.density, i);
+    if constexpr (needs & Mixture) s.massRatio = load(p.massRatio, i), s.viscosity = load(p.viscosity, i);
     return s;
 }
 
@@ -119,6 +124,7 @@ struct LaminarViscosity {
     static constexpr const char* name = "laminar viscosity";
     static const char* skipped(const Scene& s) {
         if (s.simulation.formulation == Formulation::Classic) return "the classic formulation has another one";
+        if (isMixture(s)) return "each fluid of the mixture has its own";
         return s.fluid.viscosity > 0 ? "" : "fluid.viscosity is 0";
     }
     template <class R, class A>
@@ -139,6 +145,7 @@ struct ArtificialViscosity {
     static const char* skipped(const Scene& s) {
         if (s.simulation.formulation == Formulation::Classic) return "the classic formulation has none";
         if (s.simulation.formulation == Formulation::TransportVelocity) return "transport_velocity does without";
+        if (isMixture(s)) return "each fluid of the mixture has its own";
         return s.fluid.artificialViscosity > 0 ? "" : "fluid.artificial_viscosity is 0";
     }
     template <class R> HD static R approach(const Constants& c, const Pair<R>& p, R g, Vector<R> vij) {
@@ -152,6 +159,28 @@ struct ArtificialViscosity {
     template <class R, class A>
     HD static void addWall(const Constants& c, const Pair<R>& p, const Weights<R>& k, const State<R>& i, const Wall<R>& b, A& a) {
         const R s = approach(c, p, k.g, i.velocity - b.own);
+        a.addAlong(b.mass * s * (i.inverseDensity + i.inverseDensity), p.r);
+    }
+};
+
+// Both, of fluids that each have their own: the harmonic mean of both particles' viscosities, with which stress goes on unchanged from one fluid to the
+// other, and of their masses.
+struct MixtureViscosity {
+    static constexpr unsigned needs = Velocity | InverseDensity | WallVelocity | OwnVelocity | Mixture;
+    static constexpr const char* name = "viscosities of a mixture";
+    static const char* skipped(const Scene& s) { return isMixture(s) ? "" : "there is one fluid"; }
+    template <class R> HD static R harmonic(R a, R b) { return R(real(2)) * a * b / max(a + b, R(real(1e-20))); }
+    template <class R, class A>
+    HD static void add(const Constants& c, const Pair<R>& p, const Weights<R>& k, const State<R>& i, const State<R>& j, A& a) {
+        const Vector<R> vij = i.velocity - j.velocity;
+        a.addOther(R(c.laminar) * harmonic(i.viscosity, j.viscosity) * k.viscous * i.inverseDensity * j.inverseDensity, vij);
+        const R s = harmonic(i.massRatio, j.massRatio) * ArtificialViscosity::approach(c, p, k.g, vij);
+        a.addAlong(s * (i.inverseDensity + j.inverseDensity), p.r);
+    }
+    template <class R, class A>
+    HD static void addWall(const Constants& c, const Pair<R>& p, const Weights<R>& k, const State<R>& i, const Wall<R>& b, A& a) {
+        a.addOther(R(c.laminar) * i.viscosity * k.viscous * i.inverseDensity * i.inverseDensity * b.mass, i.velocity - b.velocity);
+        const R s = i.massRatio * ArtificialViscosity::approach(c, p, k.g, i.velocity - b.own);
         a.addAlong(b.mass * s * (i.inverseDensity + i.inverseDensity), p.r);
     }
 };
@@ -202,7 +231,7 @@ struct Buoyancy {
 template <class... Ts> struct TermList { static constexpr unsigned needs = (0u | ... | Ts::needs); };
 using Viscosities = TermList<LaminarViscosity, ArtificialViscosity>;   // of all formulations but the classic one
 using Mixing = TermList<VelocityTransfer, Buoyancy>;   // in a pass of their own, as rare as they are
-using OptionalTerms = TermList<LaminarViscosity, ArtificialViscosity, ClassicViscosity>;
+using OptionalTerms = TermList<LaminarViscosity, ArtificialViscosity, MixtureViscosity, ClassicViscosity>;
 
 // Calls done(TermList<...>) with just the terms this scene wants: a run-time scene becomes a compile-time list.
 template <class Done, class... Chosen> auto chooseTerms(const Scene&, Done done, TermList<Chosen...> chosen, TermList<>) {

@@ -33,6 +33,9 @@ struct Particles {
     VectorField keptPosition;      // m, what the integrator keeps while forces are evaluated elsewhere
     VectorField keptVelocity;      // m/s
     ScalarField keptDensity;       // kg/m^3
+    ScalarField massRatio;         // of a mixture: rest density / the scene's. Density and what follows from it are those of the same particle of the
+                                   // scene's fluid, which has its volume and pressure; forces are divided by the ratio
+    ScalarField viscosity;         // of a mixture, Pa s
     ScalarField level;             // local steps only: how short a particle's own step is, longest / 2^level, or how it rests
     uint8_t* due;                  // local steps only: per cluster, whether it is evaluated now
 };
@@ -142,7 +145,8 @@ struct Constants {
     Vector<real> period, inversePeriod;           // m, 1/m, of periodic axes; 0 for the others
     bool periodic;                                // any of them
     real restitution, friction;
-    real soundSpeed, cfl, fixedStep;
+    real soundSpeed, fastestSound;                // m/s, of the scene's rest density, and of the lightest fluid
+    real cfl, fixedStep;
     real maxStep;                                 // s, what is asked for and what forces but pressure allow
     real restSpeed;                               // below that share of the speed of sound fluid may rest, 0: nothing rests
     Vector<real> stirCenter, stirVelocity;
@@ -187,6 +191,9 @@ template <class R> HD inline Vector<R> bodyForce(const Constants& c, Vector<real
     const Vector<R> gravity{gravityNow.x, gravityNow.y, gravityNow.z}, center{c.center.x, c.center.y, c.center.z};
     return subtractScaled(gravity, R(c.centralPull), x - center);
 }
+
+// What fluids weigh in comparison to the scene's.
+template <class I> HD inline Real<I> massRatio(const Particles& fluid, I i) { return fluid.massRatio.data ? load(fluid.massRatio, i) : Real<I>(1); }
 
 // Of a boundary particle's wall itself, m/s.
 template <class I> HD inline Vector<Real<I>> ownVelocity(const Particles& walls, I b) {

@@ -12,7 +12,8 @@ namespace {
 const char* const Scenes[] = {"1.json", "2.json", "3.json", "dam_break.json", "double_dam_break.json", "ball_drop.json",
                               "pool_drop.json", "still_pool.json", "poiseuille.json", "test/dam_break_small.json",
                               "test/historical_small.json", "validation/hydrostatic.json", "validation/cavity.json",
-                              "validation/taylor_green.json", "validation/drop.json", "test/solids_small.json"};
+                              "validation/taylor_green.json", "validation/drop.json", "test/solids_small.json",
+                              "test/mixture_small.json", "test/surface_small.json"};
 
 std::unique_ptr<Simulation> onCpu(const Scene& s, const RunState& from) { return makeSimdSimulation(s, from, 2); }
 std::unique_ptr<Simulation> onGpu(const Scene& s, const RunState& from) { return makeCudaSimulation(s, from, 0); }
@@ -21,6 +22,7 @@ void expectSameBits(const RunState& a, const RunState& b) {
     EXPECT_EQ(a.particles.positions, b.particles.positions);
     EXPECT_EQ(a.particles.velocities, b.particles.velocities);
     EXPECT_EQ(a.particles.walls, b.particles.walls);
+    EXPECT_EQ(a.particles.bodies, b.particles.bodies);
     EXPECT_EQ(a.densities, b.densities);
     EXPECT_EQ(a.clock.time, b.clock.time);
     EXPECT_EQ(a.clock.dt, b.clock.dt);

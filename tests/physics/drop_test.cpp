@@ -11,16 +11,17 @@ namespace {
 
 constexpr double Radius = 0.1, Tension = 1, Density = 1000;
 
-Scene drop(double particles, float speed) {   // particles: along a radius; speed: of stretching at its end, m/s
+Scene drop(int dimensions, double particles, float speed) {   // particles: along a radius; speed: of stretching at its end, m/s
     Scene s;
     s.compute.backend = Backend::Cpu;
-    s.simulation.formulation = Formulation::DeltaPlus, s.simulation.dimensions = 2, s.simulation.placement = StartPlaces::Relaxed;
+    s.simulation.formulation = Formulation::DeltaPlus, s.simulation.dimensions = dimensions, s.simulation.placement = StartPlaces::Relaxed;
     s.simulation.spacing = float(Radius / particles), s.simulation.gravity = {0, 0, 0};
-    s.domain.max = {0.4f, 0.4f, 0.1f};
+    s.domain.max = {0.4f, 0.4f, dimensions == 3 ? 0.4f : 0.1f};
     s.walls.kind = WallKind::Reflect;
     s.fluid.viscosity = 0, s.fluid.artificialViscosity = 0.02f, s.fluid.surfaceTension = float(Tension);
     Body& body = s.fluid.bodies[0];
-    body.shape = Shape::Cylinder, body.axis = Axis::Z, body.center = {0.2f, 0.2f, 0.05f}, body.radius = float(Radius), body.height = 0.1f;
+    body.shape = dimensions == 3 ? Shape::Sphere : Shape::Cylinder, body.axis = Axis::Z;
+    body.center = 0.5f * s.domain.max, body.radius = float(Radius), body.height = 0.1f;
     body.field = Field::Stretching, body.velocity = {speed, 0, 0};
     return s;
 }
@@ -40,10 +41,10 @@ Shape2 shapeOf(const std::vector<Particle>& particles) {
     return {middle, x2 - y2, std::sqrt(2 * (x2 + y2)), farthest};
 }
 
-// Rayleigh 1879, in two dimensions: omega^2 = 6 sigma / (rho r^3).
-TEST(Drop, SwingsWithRayleighsPeriod) {
-    const double period = 2 * std::numbers::pi / std::sqrt(6 * Tension / (Density * std::pow(Radius, 3)));
-    const auto simulation = makeSimulation(drop(25, 0.04f));
+// Rayleigh 1879: omega^2 = 8 sigma / (rho r^3), in two dimensions 6.
+void expectRayleighsPeriod(int dimensions, double particles) {
+    const double period = 2 * std::numbers::pi / std::sqrt((dimensions == 3 ? 8 : 6) * Tension / (Density * std::pow(Radius, 3)));
+    const auto simulation = makeSimulation(drop(dimensions, particles, 0.04f));
     double before = 0, last = 0, half = 0;
     while (half == 0 && last < period) {
         simulation->step(20);
@@ -51,12 +52,16 @@ TEST(Drop, SwingsWithRayleighsPeriod) {
         if (now > period / 8 && stretch < 0) half = last + (now - last) * before / (before - stretch);   // back at the circle
         before = stretch, last = now;
     }
-    std::printf("drop: period %.4f s, Rayleigh's %.4f s\n", 2 * half, period);
+    std::printf("drop, %d dimensions, %g particles along the radius: period %.4f s, Rayleigh's %.4f s\n", dimensions, particles, 2 * half, period);
     EXPECT_NEAR(2 * half, period, 0.08 * period);
+}
+TEST(Drop, SwingsWithRayleighsPeriod) {
+    expectRayleighsPeriod(2, 25);
+    expectRayleighsPeriod(3, 12);
 }
 
 TEST(Drop, IsRoundAndPressesAsLaplaceSays) {
-    Scene s = drop(15, 0);
+    Scene s = drop(2, 15, 0);
     Body& body = s.fluid.bodies[0];
     body = {};
     body.min = {0.12f, 0.12f, 0}, body.max = {0.28f, 0.28f, 0.1f};   // a square becomes round

@@ -47,7 +47,7 @@ protected:
     }
     static bool same(const Checkpoint& a, const Scene& scene, const RunState& b) {
         return writeScene(a.scene) == writeScene(scene) && a.state.particles.positions == b.particles.positions &&
-               a.state.particles.velocities == b.particles.velocities && a.state.particles.walls == b.particles.walls &&
+               a.state.particles.velocities == b.particles.velocities && a.state.particles.walls == b.particles.walls && a.state.particles.bodies == b.particles.bodies &&
                a.state.densities == b.densities && a.state.clock.time == b.clock.time && a.state.clock.dt == b.clock.dt && a.state.clock.steps == b.clock.steps &&
                a.state.start.low == b.start.low && a.state.start.high == b.start.high && a.state.start.speed == b.start.speed;
     }
