@@ -50,7 +50,9 @@ static bool runsOnGpu(const Scene& scene, ParticleCount count) {
 std::unique_ptr<Simulation> makeSimdSimulation(const Scene& scene, const RunState& state, int threads) {
     struct InstructionSet { Simd name; int64_t target; decltype(&makeSseSimulation) make; };
     static constexpr InstructionSet sets[] = {{Simd::Avx512, HWY_AVX3, makeAvx512Simulation},
+#ifndef SPINDRIFT_WITHOUT_AVX2
                                               {Simd::Avx2, HWY_AVX2, makeAvx2Simulation},
+#endif
                                               {Simd::Sse, HWY_SSSE3, makeSseSimulation}};
     const int64_t machine = hwy::SupportedTargets();
     for (const InstructionSet& set : sets)

@@ -254,8 +254,13 @@ template <class Kernel> struct ComputeDensityRate {
         if (!isDue<Watched>(v.fluid, i)) return;
         const Vector<real> gravity = gravityNow(v);
         const Vector<R> x = load(v.fluid.position, i), u = load(v.fluid.velocity, i);
-        const R rho = load(v.fluid.density, i), diffusion = v.c.diffusion;
-        const Vector<R> slope = massRatio(v.fluid, i) * hydrostaticSlope(v.c, gravity, x);
+        const R rho = load(v.fluid.density, i);
+        R diffusion = v.c.diffusion;
+        Vector<R> slope = hydrostaticSlope(v.c, gravity, x);
+        if (v.fluid.massRatio.data) {   // who is heavier has a lower speed of sound
+            const R ratio = load(v.fluid.massRatio, i);
+            slope = ratio * slope, diffusion = diffusion / squareRoot(ratio);
+        }
         R sum = 0;
         forNeighbours<Lists::Pruned>(v, v.fluidNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
             const R approach = rho * dot(u - load(v.fluid.velocity, j), p.r);

@@ -14,7 +14,7 @@ enum Needs : unsigned { Velocity = 1, InverseDensity = 2, WallVelocity = 4, Pres
                         Mixture = 128 };
 
 // What terms read of one particle.
-template <class R> struct State { Vector<R> velocity; R pressureTerm, inverseDensity, pressure, density, massRatio, viscosity; };
+template <class R> struct State { Vector<R> velocity; R pressureTerm, inverseDensity, pressure, density, rootMassRatio, viscosity; };
 
 template <unsigned needs, class I> HD inline State<Real<I>> loadState(const Particles& p, I i) {
     State<Real<I>> s;
@@ -26,7 +26,7 @@ template <unsigned needs, class I> HD inline State<Real<I>> loadState(const Part
         s.pressure = s.pressureTerm * rho * rho;
     }
     if constexpr (needs & Density) s.density = massRatio(p, i) * load(p.density, i);
-    if constexpr (needs & Mixture) s.massRatio = load(p.massRatio, i), s.viscosity = load(p.viscosity, i);
+    if constexpr (needs & Mixture) s.rootMassRatio = squareRoot(load(p.massRatio, i)), s.viscosity = load(p.viscosity, i);
     return s;
 }
 
@@ -164,7 +164,7 @@ struct ArtificialViscosity {
 };
 
 // Both, of fluids that each have their own: the harmonic mean of both particles' viscosities, with which stress goes on unchanged from one fluid to the
-// other, and of their masses.
+// other; of the artificial ones, too, which are as rho c, and c as 1 / sqrt(rho).
 struct MixtureViscosity {
     static constexpr unsigned needs = Velocity | InverseDensity | WallVelocity | OwnVelocity | Mixture;
     static constexpr const char* name = "viscosities of a mixture";
@@ -174,13 +174,13 @@ struct MixtureViscosity {
     HD static void add(const Constants& c, const Pair<R>& p, const Weights<R>& k, const State<R>& i, const State<R>& j, A& a) {
         const Vector<R> vij = i.velocity - j.velocity;
         a.addOther(R(c.laminar) * harmonic(i.viscosity, j.viscosity) * k.viscous * i.inverseDensity * j.inverseDensity, vij);
-        const R s = harmonic(i.massRatio, j.massRatio) * ArtificialViscosity::approach(c, p, k.g, vij);
+        const R s = harmonic(i.rootMassRatio, j.rootMassRatio) * ArtificialViscosity::approach(c, p, k.g, vij);
         a.addAlong(s * (i.inverseDensity + j.inverseDensity), p.r);
     }
     template <class R, class A>
     HD static void addWall(const Constants& c, const Pair<R>& p, const Weights<R>& k, const State<R>& i, const Wall<R>& b, A& a) {
         a.addOther(R(c.laminar) * i.viscosity * k.viscous * i.inverseDensity * i.inverseDensity * b.mass, i.velocity - b.velocity);
-        const R s = i.massRatio * ArtificialViscosity::approach(c, p, k.g, i.velocity - b.own);
+        const R s = i.rootMassRatio * ArtificialViscosity::approach(c, p, k.g, i.velocity - b.own);
         a.addAlong(b.mass * s * (i.inverseDensity + i.inverseDensity), p.r);
     }
 };

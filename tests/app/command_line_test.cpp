@@ -37,7 +37,7 @@ TEST_F(CommandLine, MistakesInTheArguments) {
                   "out of range, allowed: 0 to 1000 Pa s");
     expectMistake(Small + "--set fluid.viscosity=", Exit::Usage, "expected a number in Pa s, found \"\"");
     expectMistake(Small + "--set fluid.bodies[0].height=1", Exit::Usage,
-                  "unknown knob; known here: center, field, pressure, radius, shape, velocity");
+                  "unknown knob; known here: center, field, pressure, radius, rest_density, shape, velocity, viscosity");
     expectMistake("compare", Exit::Usage, "required");
 }
 

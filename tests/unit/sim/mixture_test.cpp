@@ -50,6 +50,30 @@ TEST(Mixture, OfTwiceTheSameFluidIsThatFluid) {
         }
 }
 
+// Whether a fluid is the scene's or a body's own: walls, weight, both viscosities and diffusion are the same.
+TEST(Mixture, OfOneFluidIsThatFluidAlone) {
+    for (Formulation formulation : Formulations)
+        for (Precision precision : Precisions) {
+            Scene alone = twoFluids(formulation, precision);
+            alone.walls.kind = WallKind::Particles, alone.simulation.gravity = {0, -9.81f, 0};
+            alone.fluid.bodies.resize(1), alone.fluid.bodies[0].min = {0, 0, 0}, alone.fluid.bodies[0].max = {0.5f, 0.5f, 1};
+            alone.fluid.restDensity = 3000, alone.fluid.stiffness = 1e5f, alone.fluid.artificialViscosity = 0.2f;
+            Scene body = alone;
+            body.fluid.restDensity = 1000, body.fluid.bodies[0].restDensity = 3000;
+            const auto a = makeSimulation(alone), b = makeSimulation(body);
+            a->step(40), b->step(40);
+            const Measurement p = a->measure(), q = b->measure();
+            const double tolerance = precision == Precision::Float ? 1e-4 : 1e-6;
+            EXPECT_NEAR(p.kineticEnergy, q.kineticEnergy, tolerance * p.kineticEnergy);
+            EXPECT_NEAR(p.potentialEnergy, q.potentialEnergy, tolerance * p.potentialEnergy);
+            EXPECT_NEAR(p.meanDensity, q.meanDensity, tolerance * p.meanDensity);
+            EXPECT_NEAR(p.maxDensityError, q.maxDensityError, 10 * tolerance * p.maxDensityError);
+            EXPECT_NEAR(p.dt, q.dt, tolerance * p.dt);
+            EXPECT_NEAR(p.maxSpeed, q.maxSpeed, tolerance * p.maxSpeed);
+            for (int id : {0, 100, 1999}) EXPECT_NEAR(a->particle(id).pressure, b->particle(id).pressure, 10 * tolerance * 1e5);
+        }
+}
+
 TEST(Mixture, KeepsMassAndMomentum) {
     for (Formulation formulation : Formulations)
         for (Precision precision : Precisions) {
