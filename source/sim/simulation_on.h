@@ -282,9 +282,11 @@ private:
     bool nothingMovedFar() const { return keepsLists && travel_ < skin_ / 2; }
     // Where few are awake lists are short and the sort, which knows no rest, is what costs: both cost the same with a skin that grows as
     // 1/sqrt(share awake). Blocks are large enough for 0.4 support radii.
-    float chooseSkin() {
+    // Where lists would not outlive a step, by what the last one `moved` (unless nobody knows), they reach no further than they must.
+    float chooseSkin(double moved) {
         const float asked = scene_.compute.skin, share = hasLocalSteps() ? float(std::max(clock().awake, 1e-3)) : 1;
-        return supportRadius(scene_) * std::max(asked, std::min(asked / std::sqrt(share), 0.4f));
+        const float skin = supportRadius(scene_) * std::max(asked, std::min(asked / std::sqrt(share), 0.4f));
+        return travel_ < 1e29 && moved >= skin / 2 ? 0 : skin;
     }
     void moveSolids() { placeSolids(0); }
     void moveSolidsHalfWay() { placeSolids(0.5); }   // the clock is at the step's end
@@ -293,8 +295,9 @@ private:
         solids_.placeWalls(view());
     }
     void sort() {
+        const double moved = travel_ - std::exchange(travelBefore_, travel_);
         if (nothingMovedFar()) return;
-        if constexpr (keepsLists) skin_ = chooseSkin();
+        if constexpr (keepsLists) skin_ = chooseSkin(moved);
         fluid_.sort(grid_);
         boxes_.compute(device_, fluid_.view());
         if (hasLocalSteps()) onFluid<ApplyEquationOfState>();   // of those who aren't due
@@ -305,7 +308,7 @@ private:
         }
         for (NeighbourLists* lists : {&fluidNearFluid_, &wallsNearFluid_}) lists->forget(fluid_.view());
         fluidNearWalls_.forget(walls_.view());
-        travel_ = 0;
+        travel_ = travelBefore_ = 0;
     }
     // Of those who are looked at now; forces on solids may be asked for at any time.
     void findNeighbours() {
@@ -456,6 +459,7 @@ private:
     static constexpr const char* allAlike = "all take the same steps (time.mode)";
     static constexpr const char* noLists = "rows of cells are walked instead of lists";
     double travel_ = 1e30;      // m, bound of any particle's way since the lists were built
+    double travelBefore_ = 1e30;   // the same when sorting was last considered
     float skin_ = 0;            // m, how much further than the support these reach
     Boxes boxes_, wallBoxes_;
     NeighbourLists fluidNearFluid_, wallsNearFluid_, fluidNearWalls_, wallsNearWalls_;
