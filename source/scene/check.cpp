@@ -27,6 +27,8 @@ constexpr double BytesPerCell = 16;
 constexpr double GpuBytesPerParticle = 136, GpuBytesPerCarried = 8, GpuBytesPerShifted = 32, GpuBytesPerWall = 76, GpuBytesPerCell = 13;
 // Local steps: a level and its sorted copy, those of density and acceleration, a flag.
 constexpr double GpuBytesPerLocalStep = 29, GpuBytesPerLocalWall = 1;
+// Mixtures: mass and viscosity, and their sorted copies. Surface tension: a normal and its length.
+constexpr double GpuBytesPerMixed = 16, GpuBytesPerNormal = 20;
 constexpr double HostBytesPerGpuParticle = 100;
 constexpr double GpuBytesAnyway = 64 << 20;
 // Particle ids are 32-bit; walls and fluid together stay clear of the limit.
@@ -366,7 +368,8 @@ int64_t estimateGpuMemory(const Scene& scene, ParticleCount count) {
     const double fluid = double(count.fluid), walls = double(count.walls);
     const bool local = scene.time.mode == TimeMode::Local;
     const double more = (local ? GpuBytesPerLocalStep : 0) + (carriesDensity(scene) ? GpuBytesPerCarried : 0) +
-                         (shiftsParticles(scene) ? GpuBytesPerShifted : 0);
+                         (shiftsParticles(scene) ? GpuBytesPerShifted : 0) + (isMixture(scene) ? GpuBytesPerMixed : 0) +
+                         (scene.fluid.surfaceTension > 0 ? GpuBytesPerNormal : 0);
     const double bytes = (GpuBytesPerParticle + more + keptBytes(scene)) * fluid + (GpuBytesPerWall + (local ? GpuBytesPerLocalWall : 0)) * walls +
                          GpuBytesPerCell * mostCells(scene, fluid + walls) + GpuBytesAnyway;
     return int64_t(std::min(bytes, 9e18));

@@ -331,7 +331,7 @@ float restDensity(const Scene& scene, const Body& body) { return body.restDensit
 float viscosity(const Scene& scene, const Body& body) { return body.viscosity >= 0 ? body.viscosity : scene.fluid.viscosity; }
 bool isMixture(const Scene& scene) {
     return std::any_of(scene.fluid.bodies.begin(), scene.fluid.bodies.end(), [&](const Body& b) {
-        return restDensity(scene, b) != scene.fluid.restDensity || viscosity(scene, b) != scene.fluid.viscosity;
+        return restDensity(scene, b) != scene.fluid.restDensity || b.viscosity >= 0;   // the scene's viscosity may change during a run
     });
 }
 float largestViscosity(const Scene& scene) {

@@ -121,6 +121,17 @@ TEST(Mixture, ViscousStressIsTheSameOnBothSides) {
     }
 }
 
+// A body that names the viscosity that the scene has is one of a mixture from the start: the scene's may change.
+TEST(Mixture, DoesNotBeginWhileItRuns) {
+    Scene s = twoFluids(Formulation::Wcsph, Precision::Float);
+    s.fluid.bodies[0].viscosity = s.fluid.viscosity;
+    const auto simulation = makeSimulation(s);
+    s.fluid.viscosity = 5;
+    simulation->apply(s);
+    simulation->step(5);
+    EXPECT_TRUE(simulation->measure().finite);
+}
+
 TEST(Mixture, GoesOnFromItsStateAndTakesKnobs) {
     Scene s = loadScene(SPINDRIFT_SOURCE_DIR "/configs/test/mixture_small.json");
     s.compute.backend = Backend::Cpu;
