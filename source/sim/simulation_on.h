@@ -202,7 +202,11 @@ private:
     bool hasLocalSteps() const { return scene_.time.mode == TimeMode::Local; }
     bool shifts() const { return shiftsParticles(scene_); }
     bool fillsSpace() const { return scene_.simulation.formulation == Formulation::TransportVelocity; }
-    bool fluidSticks() const { return wallsCarryPressure() && largestViscosity(scene_) > 0; }
+    // Or there are terms that would ask.
+    bool fluidSticks() const {
+        const bool asked = isMixture(scene_) || scene_.simulation.pressureForm == PressureForm::Mean;
+        return wallsCarryPressure() && (asked || largestViscosity(scene_) > 0);
+    }
     template <class... Ts> void noteTerms(TermList<Ts...>) {
         (rows_.push_back({std::string("forces: ") + Ts::name, Ts::skipped(scene_)}), ...);
     }

@@ -132,6 +132,19 @@ TEST(Mixture, DoesNotBeginWhileItRuns) {
     EXPECT_TRUE(simulation->measure().finite);
 }
 
+// Terms that read the walls' velocities are there whether anything sticks to walls or not.
+TEST(Mixture, MayBeWithoutViscosity) {
+    for (bool mixture : {true, false}) {
+        Scene s = twoFluids(Formulation::Wcsph, Precision::Float);
+        s.walls.kind = WallKind::Particles, s.fluid.viscosity = 0;
+        if (mixture) s.fluid.bodies[0].restDensity = 700;
+        else s.simulation.pressureForm = PressureForm::Mean;
+        const auto simulation = makeSimulation(s);
+        simulation->step(5);
+        EXPECT_TRUE(simulation->measure().finite);
+    }
+}
+
 TEST(Mixture, GoesOnFromItsStateAndTakesKnobs) {
     Scene s = loadScene(SPINDRIFT_SOURCE_DIR "/configs/test/mixture_small.json");
     s.compute.backend = Backend::Cpu;
