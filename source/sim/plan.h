@@ -39,6 +39,7 @@ template <class Device> template <class K> void SimulationOn<Device>::makePlan()
             break;
     }
     noteTerms(OptionalTerms{});
+    noteTerms(Mixing{});
     addPass("solid collisions", &S::template onFluid<KeepOutOfSolids>, Initial::No, solids_.count() > 0 ? "" : "there are no solids");
     measureLoads_ = loadPass<K>();
     sortsInStep_ = int(std::count_if(plan_.begin(), plan_.end(), [](const Row& row) { return row.run == &S::sort; }));
