@@ -46,8 +46,8 @@ bool isLeftOut(vec4 place, float radius) {
 void main() {
     bool wall = gl_VertexID >= int(frame.particle.w);
     vec4 place = frame.view * vec4(vertex.xyz, 1.0);
-    bool solid = wall && vertex.w > 0.5;
-    float radius = frame.particle.x * (wall && !solid ? 0.4 : 1.0);
+    bool solid = wall && vertex.w > 0.5, elastic = wall && vertex.w > 1.5;
+    float radius = frame.particle.x * (elastic ? vertex.w - 2.0 : wall && !solid ? 0.4 : 1.0);
     if (isLeftOut(place, radius)) {
         gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
         return;
@@ -55,8 +55,8 @@ void main() {
     float pixels = pixelsOf(radius, place);
 
     vec3 color = frame.color.w > 0.0 ? vec3(0.25, 0.56, 0.90) : tableColor(vertex.w);
-    if (wall) color = vec3(0.46, 0.49, 0.55);
-    tint = vec4(color * color, wall && !solid ? 0.4 : 1.0);
+    if (wall) color = elastic ? vec3(0.78, 0.45, 0.36) : vec3(0.46, 0.49, 0.55);
+    tint = vec4(color * color, elastic ? 0.45 : wall && !solid ? 0.4 : 1.0);
 
     gl_Position = frame.projection * place;
     // The square's depth is the sphere's nearest point; the fragment goes back from there.

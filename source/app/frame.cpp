@@ -70,7 +70,8 @@ Frame::Frame(int width, int height, int samples) : renderer_(width, height, samp
 void Frame::update(Simulation& simulation, const Scene& scene) {
     fluidCount_ = simulation.fluidCount();
     wallCount_ = scene.view.showWalls ? simulation.wallCount() : simulation.solidParticleCount();
-    vertices_.resize(fluidCount_ + wallCount_);
+    objectCount_ = simulation.objectParticleCount();
+    vertices_.resize(fluidCount_ + wallCount_ + objectCount_);
     seen_ = write(simulation, scene.view.colorBy);
     if (scene.view.colorBy != writtenBy_) fresh_ = true;
     writtenBy_ = scene.view.colorBy;
@@ -108,7 +109,7 @@ void Frame::draw(const Scene& scene, std::vector<Ring> rings) {
     settings.camera = cameraOf(scene, float(width()) / float(height()));
     settings.domainSize = domainSize(scene);
     settings.fluidCount = fluidCount_;
-    settings.wallCount = wallCount_;
+    settings.wallCount = wallCount_ + objectCount_;
     settings.outline = view.showOutline;
     settings.ground = view.showGround;
     settings.diameter = scene.simulation.spacing * view.particleScale;

@@ -39,7 +39,7 @@ private:
 
     Renderer renderer_;
     VertexBuffer vertices_;
-    int fluidCount_ = 0, wallCount_ = 0;  // in vertices_
+    int fluidCount_ = 0, wallCount_ = 0, objectCount_ = 0;  // in vertices_
     ColorBy writtenBy_ = ColorBy::Plain;
     Range seen_{}, run_{};  // of the last update; of all since restartRange() by this quantity
     bool fresh_ = true;     // no range yet

@@ -100,6 +100,7 @@ HD inline float min(float a, float b) { return a < b ? a : b; }
 HD inline float max(float a, float b) { return a > b ? a : b; }
 HD inline float select(bool condition, float yes, float no) { return condition ? yes : no; }
 HD inline float squareRoot(float a) { return std::sqrt(a); }
+HD inline float nearestInteger(float a) { return std::nearbyint(a); }
 HD inline float roundDown(float a) { return std::floor(a); }
 
 HD inline float loadAt(const float* p, int i) { return p[i]; }

@@ -3,20 +3,26 @@
 #include <array>
 #include <cmath>
 
+#ifdef __CUDACC__
+#define EVERYWHERE __host__ __device__
+#else
+#define EVERYWHERE
+#endif
+
 namespace spindrift {
 
 template <class T> struct Vec3Of {
     T x = 0, y = 0, z = 0;
-    T& operator[](int k) { return k == 0 ? x : k == 1 ? y : z; }
-    T operator[](int k) const { return k == 0 ? x : k == 1 ? y : z; }
+    EVERYWHERE T& operator[](int k) { return k == 0 ? x : k == 1 ? y : z; }
+    EVERYWHERE T operator[](int k) const { return k == 0 ? x : k == 1 ? y : z; }
     bool operator==(const Vec3Of&) const = default;
 };
-template <class T> Vec3Of<T> operator+(Vec3Of<T> a, Vec3Of<T> b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-template <class T> Vec3Of<T> operator-(Vec3Of<T> a, Vec3Of<T> b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-template <class T> Vec3Of<T> operator*(T s, Vec3Of<T> a) { return {s * a.x, s * a.y, s * a.z}; }
-template <class T> T dot(Vec3Of<T> a, Vec3Of<T> b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+template <class T> EVERYWHERE Vec3Of<T> operator+(Vec3Of<T> a, Vec3Of<T> b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+template <class T> EVERYWHERE Vec3Of<T> operator-(Vec3Of<T> a, Vec3Of<T> b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+template <class T> EVERYWHERE Vec3Of<T> operator*(T s, Vec3Of<T> a) { return {s * a.x, s * a.y, s * a.z}; }
+template <class T> EVERYWHERE T dot(Vec3Of<T> a, Vec3Of<T> b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 template <class T> T length(Vec3Of<T> a) { return std::sqrt(dot(a, a)); }
-template <class T> Vec3Of<T> cross(Vec3Of<T> a, Vec3Of<T> b) {
+template <class T> EVERYWHERE Vec3Of<T> cross(Vec3Of<T> a, Vec3Of<T> b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 template <class T> Vec3Of<T> normalized(Vec3Of<T> a) { return (T(1) / length(a)) * a; }

@@ -4,9 +4,11 @@
 #include "core/hdf5_file.h"
 #include "measure/output_file.h"
 #include "scene/json.h"
+#include "scene/sample_object.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace spindrift {
@@ -15,7 +17,7 @@ namespace {
 using hdf5::Handle, hdf5::Trouble, hdf5::require;
 
 constexpr const char* Format = "spindrift checkpoint";
-constexpr int64_t Version = 3;   // 2: densities, where they are carried; 3: bodies, of mixtures
+constexpr int64_t Version = 4;   // 2: densities, where they are carried; 3: bodies, of mixtures; 4: motions of solids, objects
 
 // --- numbers and texts as attributes of the file ---
 
@@ -58,6 +60,25 @@ std::vector<Vec3> readVectors(hid_t file, const char* name) {
     return readArray<Vec3>(file, name, H5T_NATIVE_FLOAT, 3);
 }
 
+// 13 numbers each.
+std::vector<double> numbersOf(const std::vector<SolidMotion>& solids) {
+    std::vector<double> out;
+    for (const SolidMotion& m : solids) {
+        for (const Vec3d& v : {m.place, m.velocity, m.angularMomentum}) out.insert(out.end(), {v.x, v.y, v.z});
+        out.insert(out.end(), m.turn, m.turn + 4);
+    }
+    return out;
+}
+std::vector<SolidMotion> motionsOf(const std::vector<double>& numbers) {
+    std::vector<SolidMotion> out;
+    for (auto n = numbers.begin(); n != numbers.end(); n += 13) {
+        SolidMotion m{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, {}, {n[6], n[7], n[8]}};
+        std::copy(n + 9, n + 13, m.turn);
+        out.push_back(m);
+    }
+    return out;
+}
+
 void writeAll(hid_t file, const Scene& scene, const RunState& s) {
     const std::string text = writeScene(scene);
     hdf5::writeArray(file, Format, H5T_STD_U8LE, H5T_NATIVE_UCHAR, text.data(), {text.size(), 1});
@@ -71,6 +92,12 @@ void writeAll(hid_t file, const Scene& scene, const RunState& s) {
     if (!s.particles.solidSizes.empty())
         writeNumbers(file, "solid sizes", std::vector<double>(s.particles.solidSizes.begin(), s.particles.solidSizes.end()));
     if (!s.particles.bodies.empty()) hdf5::writeArray(file, "bodies", H5T_STD_U16LE, H5T_NATIVE_UINT16, s.particles.bodies.data(), {s.particles.bodies.size(), 1});
+    if (!s.solids.empty()) writeNumbers(file, "solid motions", numbersOf(s.solids));
+    if (!s.objects.positions.empty()) {
+        writeVectors(file, "object positions", "m", s.objects.positions);
+        writeVectors(file, "object velocities", "m/s", s.objects.velocities);
+        hdf5::writeArray(file, "broken bonds", H5T_STD_U8LE, H5T_NATIVE_UCHAR, s.objects.broken.data(), {s.objects.broken.size(), 1});
+    }
     if (!s.densities.empty()) writeFloats(file, "densities", "kg/m^3", s.densities.data(), s.densities.size(), 1);
 }
 
@@ -83,6 +110,16 @@ void readSolidSizes(hid_t file, Checkpoint& c) {
         all += size_t(size);
     }
     if (all > c.state.particles.walls.size()) throw Trouble{"solid sizes"};
+}
+
+void readObjects(hid_t file, Checkpoint& c) {
+    const ObjectSample objects = sampleObjects(c.scene);
+    ObjectState& state = c.state.objects;
+    state.positions = readVectors(file, "object positions");
+    state.velocities = readVectors(file, "object velocities");
+    state.broken = readArray<uint8_t>(file, "broken bonds", H5T_NATIVE_UCHAR, 1);
+    if (state.positions.size() != objects.size() || state.velocities.size() != objects.size()) throw Trouble{"object positions"};
+    if (state.broken.size() != 2 * objects.bonds.size()) throw Trouble{"broken bonds"};
 }
 
 Checkpoint readAll(hid_t file, const std::string& path) {
@@ -99,6 +136,10 @@ Checkpoint readAll(hid_t file, const std::string& path) {
     c.state.particles.velocities = readVectors(file, "velocities");
     c.state.particles.walls = readVectors(file, "walls");
     if (!c.scene.solids.empty()) readSolidSizes(file, c);
+    if (H5Aexists(file, "solid motions") > 0) c.state.solids = motionsOf(readNumbers(file, "solid motions", 13 * c.scene.solids.size()));
+    const auto floats = [](const Solid& s) { return s.floats(); };
+    if (c.state.solids.empty() && std::any_of(c.scene.solids.begin(), c.scene.solids.end(), floats)) throw Trouble{"solid motions"};
+    if (!c.scene.objects.empty()) readObjects(file, c);
     if (isMixture(c.scene)) c.state.particles.bodies = readArray<uint16_t>(file, "bodies", H5T_NATIVE_UINT16, 1);
     if (carriesDensity(c.scene)) c.state.densities = readArray<float>(file, "densities", H5T_NATIVE_FLOAT, 1);
     if (c.state.particles.positions.empty() || c.state.particles.velocities.size() != c.state.particles.positions.size())
@@ -109,7 +150,7 @@ Checkpoint readAll(hid_t file, const std::string& path) {
         if (body >= c.scene.fluid.bodies.size()) throw Trouble{"bodies"};
     for (float rho : c.state.densities)
         if (!(std::isfinite(rho) && rho > 0)) throw Trouble{"densities"};
-    for (const auto* field : {&c.state.particles.positions, &c.state.particles.velocities, &c.state.particles.walls})
+    for (const auto* field : {&c.state.particles.positions, &c.state.particles.velocities, &c.state.particles.walls, &c.state.objects.positions, &c.state.objects.velocities})
         for (const Vec3& v : *field)
             if (!std::isfinite(v.x + v.y + v.z)) throw Trouble{"numbers that are not finite"};
     return c;

@@ -40,6 +40,8 @@ constexpr Quantity Quantities[] = {
 
 struct SolidQuantity { const char *name, *unit; Vec3d SolidMeasurement::*of; };
 constexpr SolidQuantity SolidQuantities[] = {{"position", "m", &SolidMeasurement::position},
+                                             {"velocity", "m/s", &SolidMeasurement::velocity},
+                                             {"spin", "rad/s", &SolidMeasurement::spin},
                                              {"pressure_force", "N", &SolidMeasurement::pressureForce},
                                              {"viscous_force", "N", &SolidMeasurement::viscousForce},
                                              {"torque", "N m", &SolidMeasurement::torque}};

@@ -27,7 +27,7 @@ struct DrawSettings {
     OrbitCamera camera;
     Vec3 domainSize;
     int fluidCount = 0,
-        wallCount = 0;  // the buffer's first vertices are fluid, the next ones walls
+        wallCount = 0;  // the buffer's first vertices are fluid, the next ones walls and objects
     bool outline = true, ground = true;
     float diameter = 0.02f;
     float minimumPixels = 0;  // particles are never drawn smaller than this

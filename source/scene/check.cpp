@@ -5,6 +5,7 @@
 #include "scene/json.h"
 #include "scene/motion.h"
 #include "scene/particle_file.h"
+#include "scene/sample_object.h"
 #include "scene/schema.h"
 
 #include <fmt/format.h>
@@ -77,6 +78,10 @@ void checkDomain(const Scene& scene) {
                "use simulation.formulation wcsph");
     if (scene.simulation.formulation == Formulation::Classic && scene.time.integrator != Integrator::SymplecticEuler)
         refuse("time.integrator", "the classic formulation is stepped by symplectic_euler; use that, or simulation.formulation wcsph");
+    const bool several = isMixture(scene) || scene.simulation.pressureForm == PressureForm::Mean ||
+                         std::any_of(scene.solids.begin(), scene.solids.end(), [](const Solid& s) { return s.floats(); });
+    if (scene.time.integrator == Integrator::Split && (scene.simulation.formulation != Formulation::DeltaSph || several))
+        refuse("time.integrator", "split is for delta_sph, one fluid, pressure_form squares, and nothing that floats; use symplectic_euler");
     if (scene.time.mode == TimeMode::Local && (shiftsParticles(scene) || scene.time.integrator != Integrator::SymplecticEuler))
         refuse("time.mode", "local steps need time.integrator symplectic_euler and a formulation that doesn't shift particles; use cfl, or those");
     const bool periodic = scene.domain.periodicX || scene.domain.periodicY || scene.domain.periodicZ;
@@ -206,15 +211,18 @@ void requireColumnName(const std::vector<Member>& list, size_t index, const std:
         if (list[other].name == name) refuse(at, fmt::format("\"{}\" is the name of {}[{}] too; give each its own", name, path, other));
 }
 
-void checkKeyframes(const Solid& solid, const std::string& path) {
-    for (size_t k = 0; k < solid.keyframes.size(); ++k) {
-        const Keyframe& key = solid.keyframes[k];
+void checkKeyframeList(const Keyframes& keyframes, const std::string& path) {
+    for (size_t k = 0; k < keyframes.size(); ++k) {
+        const Keyframe& key = keyframes[k];
         if (!std::isfinite(key.time + key.turn + key.offset.x + key.offset.y + key.offset.z))
             refuse(path + ".keyframes", fmt::format("the one at t = {} s has a value that is no number; mend it", key.time));
-        if (k > 0 && key.time <= solid.keyframes[k - 1].time)
-            refuse(path + ".keyframes", fmt::format("t = {} s does not come after {} s; put them in the order of time", key.time,
-                                                    solid.keyframes[k - 1].time));
+        if (k > 0 && key.time <= keyframes[k - 1].time)
+            refuse(path + ".keyframes", fmt::format("t = {} s does not come after {} s; put them in the order of time", key.time, keyframes[k - 1].time));
     }
+}
+
+void checkKeyframes(const Solid& solid, const std::string& path) {
+    checkKeyframeList(solid.keyframes, path);
     if (!solid.keyframes.empty() && (solid.velocity != Vec3{} || solid.spin != 0))
         refuse(path + ".velocity", "keyframes say already how it moves; leave velocity and spin out");
     if (largestSpeed(solid) > 1e4)
@@ -245,6 +253,72 @@ void checkSolid(const Scene& scene, size_t index) {
         refuse(path, "moves out of the plane, and there are two dimensions; leave z out, and turn about z");
     if (!solid.name.empty()) requireColumnName(scene.solids, index, "solids");
     checkKeyframes(solid, path);
+    if (!solid.floats()) return;
+    if (!solid.keyframes.empty()) refuse(path + ".density", "keyframes say how it moves; leave one of the two out");
+    if (scene.time.mode == TimeMode::Local) refuse(path + ".density", "what floats needs the same step everywhere; set time.mode to cfl");
+    if (outside) refuse(path, "lies outside the domain, and floats; move it inside");
+}
+
+template <class Box> void checkBox(const Box& box, const std::string& path) {
+    for (int k = 0; k < 3; ++k)
+        if (!(box.min[k] <= box.max[k])) refuse(path + ".max", fmt::format("{} is below min {} along {}; swap them", box.max[k], box.min[k], "xyz"[k]));
+}
+
+void checkObject(const Scene& scene, size_t index) {
+    const Object& o = scene.objects[index];
+    const std::string path = fmt::format("objects[{}]", index);
+    const bool flat = scene.simulation.dimensions == 2;
+    const float spacing = spacingOf(scene, o);
+    Vec3 low = o.min, high = o.max;
+    int sides = 0;
+    if (o.shape == ObjectShape::Tube) {
+        const float out = o.radius + o.thickness / 2;
+        for (int k = 0; k < 3; ++k) {
+            const float half = !flat && k == int(o.axis) ? o.height / 2 : out;
+            low[k] = o.center[k] - half, high[k] = o.center[k] + half;
+        }
+        if (o.thickness >= 2 * o.radius) refuse(path + ".thickness", fmt::format("{} m leaves no room in the tube; make it less than twice the radius", o.thickness));
+        if (flat && o.axis != Axis::Z) refuse(path + ".axis", "in two dimensions a tube is a ring about z; use z");
+    } else {
+        checkBox(o, path);
+        for (int k = 0; k < (flat ? 2 : 3); ++k) sides += high[k] > low[k];
+        const int wanted = (flat ? 2 : 3) - (o.shape == ObjectShape::Sheet);
+        if (sides != wanted)
+            refuse(path, o.shape == ObjectShape::Sheet ? "a sheet is flat along one axis: give min and max the same value there, and others elsewhere"
+                                                       : "a block is no wider than a point along an axis; make max larger than min, or use a sheet");
+    }
+    for (int k = 0; k < (flat ? 2 : 3); ++k) {
+        if (low[k] < scene.domain.min[k] || high[k] > scene.domain.max[k])
+            refuse(path, fmt::format("reaches from {} to {} m along {}, out of the domain; move it inside", low[k], high[k], "xyz"[k]));
+        if (high[k] > low[k] && high[k] - low[k] < 0.99f * spacing)
+            refuse(path, fmt::format("{:.4g} m along {} is less than the {} m between its particles; thicken it or lower spacing", high[k] - low[k], "xyz"[k], spacing));
+    }
+    const double reach = double(scene.contact.influence) * 0.5 * (double(scene.simulation.spacing) + spacing);
+    if (reach > supportRadius(scene))
+        refuse(path + ".spacing", fmt::format("contacts would reach {:.4g} m, further than the support radius {:.4g} m; lower it or contact.influence", reach,
+                                              supportRadius(scene)));
+}
+
+void checkObjects(const Scene& scene) {
+    for (size_t i = 0; i < scene.objects.size(); ++i) checkObject(scene, i);
+    for (size_t i = 0; i < scene.grips.size(); ++i) {
+        const std::string path = fmt::format("grips[{}]", i);
+        checkBox(scene.grips[i], path);
+        checkKeyframeList(scene.grips[i].keyframes, path);
+        if (!scene.grips[i].keyframes.empty() && scene.grips[i].velocity != Vec3{})
+            refuse(path + ".velocity", "keyframes say already how it moves; leave velocity out");
+    }
+    for (size_t i = 0; i < scene.cuts.size(); ++i) checkBox(scene.cuts[i], fmt::format("cuts[{}]", i));
+    if (scene.objects.empty()) {
+        if (!scene.grips.empty()) refuse("grips", "there are no objects to hold; add objects or leave grips out");
+        if (!scene.cuts.empty()) refuse("cuts", "there are no objects to cut; add objects or leave cuts out");
+        return;
+    }
+    const Formulation f = scene.simulation.formulation;
+    if (f == Formulation::Classic || f == Formulation::TransportVelocity)
+        refuse("objects", "need fluid that may leave room for them: simulation.formulation wcsph, delta_sph or delta_plus");
+    if (scene.time.mode == TimeMode::Local) refuse("objects", "need the same step everywhere; set time.mode to cfl");
+    if (scene.time.integrator == Integrator::VelocityVerlet) refuse("objects", "are not stepped by velocity_verlet; set time.integrator to symplectic_euler");
 }
 
 void checkParticleFile(const Scene& scene, size_t index) {
@@ -359,7 +433,7 @@ int64_t estimateMemory(const Scene& scene, ParticleCount count) {
 // What an integrator keeps over an evaluation of the forces, and its sorted copies, on a GPU.
 static double keptBytes(const Scene& scene) {
     constexpr double Vector = 2 * 16, Scalar = 2 * 4;
-    if (scene.time.integrator == Integrator::SymplecticEuler) return 0;
+    if (scene.time.integrator == Integrator::SymplecticEuler || scene.time.integrator == Integrator::Split) return 0;
     if (scene.time.integrator == Integrator::VelocityVerlet) return Vector;
     return 2 * Vector + (carriesDensity(scene) ? Scalar : 0);
 }
@@ -388,6 +462,7 @@ void checkScene(const Scene& scene, const std::string& place, std::optional<Part
         checkRareForces(scene);
         if (!begun) checkPlacement(scene);
         for (size_t i = 0; i < scene.solids.size(); ++i) checkSolid(scene, i);
+        checkObjects(scene);
         for (size_t p = 0; p < scene.output.probes.size(); ++p) checkProbe(scene, p);
         if (scene.view.range == RangeMode::Fixed && scene.view.rangeMin >= scene.view.rangeMax)
             refuse("view.range_max",

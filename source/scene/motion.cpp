@@ -56,19 +56,20 @@ void readMotions(Scene& scene, const std::string& folder, const std::string& pla
     }
 }
 
-std::vector<MotionKey> motionOf(const Solid& solid) {
+namespace {
+
+// On and on with velocity and spin where there are no keyframes; `moves`: at all.
+std::vector<MotionKey> keysOf(const Keyframes& keyframes, bool moves, Vec3 velocity, double spin) {
     std::vector<MotionKey> keys;
-    for (const Keyframe& k : solid.keyframes) keys.push_back({k.time, toDouble(k.offset), k.turn * PerDegree});
+    for (const Keyframe& k : keyframes) keys.push_back({k.time, toDouble(k.offset), k.turn * PerDegree});
     if (keys.empty()) {
         keys.push_back({0, {}, 0});
-        if (solid.moves()) keys.push_back({Forever, Forever * toDouble(solid.velocity), Forever * solid.spin * PerDegree});
+        if (moves) keys.push_back({Forever, Forever * toDouble(velocity), Forever * spin * PerDegree});
     }
     return keys;
 }
 
-double largestSpeed(const Solid& solid) {
-    const double reach = reachOf(solid);
-    const std::vector<MotionKey> keys = motionOf(solid);
+double fastest(const std::vector<MotionKey>& keys, double reach) {
     double most = 0;
     for (size_t k = 1; k < keys.size(); ++k) {
         const double time = std::max(keys[k].time - keys[k - 1].time, 1e-9);
@@ -76,5 +77,13 @@ double largestSpeed(const Solid& solid) {
     }
     return most;
 }
+
+}  // namespace
+
+std::vector<MotionKey> motionOf(const Solid& solid) { return keysOf(solid.keyframes, solid.moves(), solid.velocity, solid.spin); }
+std::vector<MotionKey> motionOf(const Grip& grip) { return keysOf(grip.keyframes, grip.velocity != Vec3{}, grip.velocity, 0); }
+
+double largestSpeed(const Solid& solid) { return fastest(motionOf(solid), reachOf(solid)); }
+double largestSpeed(const Grip& grip) { return fastest(motionOf(grip), 0); }
 
 }  // namespace spindrift

@@ -15,7 +15,10 @@ void readMotions(Scene&, const std::string& folder, const std::string& place);
 struct MotionKey { double time; Vec3d offset; double turn; };
 std::vector<MotionKey> motionOf(const Solid&);
 
+std::vector<MotionKey> motionOf(const Grip&);
+
 // The largest speed of any of its points, m/s.
 double largestSpeed(const Solid&);
+double largestSpeed(const Grip&);
 
 }  // namespace spindrift

@@ -4,11 +4,14 @@
 #include "scene/motion.h"
 #include "scene/particle_file.h"
 #include "scene/relax.h"
+#include "scene/sample_object.h"
 #include "scene/sample_solid.h"
 #include "scene/start_fields.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <random>
 
@@ -178,6 +181,34 @@ bool isTaken(const Scene& scene, const std::vector<Convex>& solids, Vec3d p) {
     const double skin = 0.1 * double(scene.simulation.spacing);
     return std::any_of(solids.begin(), solids.end(), [&](const Convex& solid) { return distanceFrom(scene, solid, p) < skin; });
 }
+
+// Where objects are: their particles in cells as wide as the longest contact, within which no fluid starts.
+class ObjectRoom {
+public:
+    explicit ObjectRoom(const Scene& scene) : sample_(sampleObjects(scene)), fluidRadius_(0.5 * double(scene.simulation.spacing)), influence_(scene.contact.influence) {
+        for (const float r : sample_.radii) cell_ = std::max(cell_, influence_ * (fluidRadius_ + double(r)));
+        for (size_t i = 0; i < sample_.size(); ++i) cells_[cellOf(toDouble(sample_.positions[i]))].push_back(int(i));
+    }
+    bool takes(Vec3d p) const {
+        const auto [x, y, z] = cellOf(p);
+        for (int64_t k = z - 1; k <= z + 1; ++k)
+            for (int64_t j = y - 1; j <= y + 1; ++j)
+                for (int64_t i = x - 1; i <= x + 1; ++i) {
+                    const auto found = cells_.find({i, j, k});
+                    if (found == cells_.end()) continue;
+                    for (const int n : found->second)
+                        if (length(toDouble(sample_.positions[size_t(n)]) - p) < 0.98 * influence_ * (fluidRadius_ + double(sample_.radii[size_t(n)]))) return true;
+                }
+        return false;
+    }
+
+private:
+    using Cell = std::array<int64_t, 3>;
+    Cell cellOf(Vec3d p) const { return {int64_t(std::floor(p.x / cell_)), int64_t(std::floor(p.y / cell_)), int64_t(std::floor(p.z / cell_))}; }
+    ObjectSample sample_;
+    double fluidRadius_, influence_, cell_ = 0;   // m
+    std::map<Cell, std::vector<int>> cells_;
+};
 
 // Where a particle begins, relative to domain.min, and of which body it has the rest.
 struct Place { Vec3d at; size_t body; };
@@ -372,6 +403,7 @@ Placement placeParticles(const Scene& scene) {
     const std::vector<Convex> solids = solidsOf(scene);
     std::vector<Place> places;
     for (size_t b = 0; b < lattices.size(); ++b) placeBody(scene, lattices, b, solids, jitter, places);
+    if (!scene.objects.empty()) std::erase_if(places, [objects = ObjectRoom(scene)](const Place& p) { return objects.takes(p.at); });
     if (relaxed(scene) && !places.empty()) relaxPlaces(scene, lattices, places);
     for (const Place& place : places) {
         const Start start = startOf(scene, scene.fluid.bodies[place.body], place.at);
@@ -421,11 +453,24 @@ double soundSpeed(const Scene& s, const FluidExtent& fluid) {
     if (s.fluid.stiffness > 0) return std::sqrt(double(s.fluid.stiffness) * gamma / s.fluid.restDensity);
     if (s.fluid.soundSpeed > 0) return s.fluid.soundSpeed;
     const Vec3d g = toDouble(s.simulation.gravity), size = s.domain.size();
+    Vec3d low = fluid.low, high = fluid.high;   // of all that falls
+    for (const Solid& solid : s.solids) {
+        if (!solid.floats()) continue;
+        const Vec3d middle = convexOf(solid, 3).middle - toDouble(s.domain.min);
+        for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], middle[k]), high[k] = std::max(high[k], middle[k]);
+    }
+    for (const Object& o : s.objects) {
+        const bool tube = o.shape == ObjectShape::Tube;
+        const Vec3d middle = tube ? toDouble(o.center) : 0.5 * (toDouble(o.min) + toDouble(o.max)), at = middle - toDouble(s.domain.min);
+        for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], at[k]), high[k] = std::max(high[k], at[k]);
+    }
     double fall = 0;   // m^2/s^2
     for (int k = 0; k < 3; ++k)
-        fall += s.domain.periodic(k) ? std::abs(g[k]) * size[k] : g[k] > 0 ? g[k] * (size[k] - fluid.low[k]) : -g[k] * fluid.high[k];
+        fall += s.domain.periodic(k) ? std::abs(g[k]) * size[k] : g[k] > 0 ? g[k] * (size[k] - low[k]) : -g[k] * high[k];
     double start = std::max<double>(fluid.speed, length(s.walls.velocity));
     for (const Solid& solid : s.solids) start = std::max(start, largestSpeed(solid));
+    for (const Object& object : s.objects) start = std::max(start, length(toDouble(object.velocity)));
+    for (const Grip& grip : s.grips) start = std::max(start, largestSpeed(grip));
     const double pull = s.simulation.centralRate * length(0.5 * size);   // to the centre from a corner
     // The pressure in the smallest drop that is one, 2 sigma / R.
     const double tension = 4 * s.fluid.surfaceTension / (s.fluid.restDensity * supportRadius(s));

@@ -18,7 +18,7 @@ enum class PressureForm { Squares, Mean };
 enum class EquationOfState { Tait, Linear };
 enum class WallKind { Reflect, Particles };
 enum class TimeMode { Fixed, Cfl, Local };
-enum class Integrator { SymplecticEuler, VelocityVerlet, PredictorCorrector };
+enum class Integrator { SymplecticEuler, VelocityVerlet, PredictorCorrector, Split };
 enum class Shape { Block, Sphere, Cylinder, Wedge, File };
 enum class Axis { X, Y, Z };
 enum class ColorBy { Plain, Velocity, Pressure, Density, Acceleration, Id, Fluid };
@@ -29,6 +29,7 @@ enum class Face { None, XMin, XMax, YMin, YMax, ZMin, ZMax };
 enum class RangeMode { Frame, Run, Fixed };
 enum class ProbeKind { Point, Line, Height, Front };
 enum class Order { Mean, Linear };
+enum class ObjectShape { Block, Sheet, Tube };
 
 // A block reads min and max, a wedge too: its ridge runs along z, above the middle of its base. A sphere reads center and
 // radius, a cylinder center, radius, height and axis. A file, of fluid only, has no shape but particles.
@@ -56,7 +57,8 @@ struct Keyframe { float time = 0; Vec3 offset; float turn = 0; bool operator==(c
 using Keyframes = std::vector<Keyframe>;
 
 // An obstacle: fluid flows around it. It stands still, goes on and on with `velocity` and `spin`, or moves as its
-// keyframes say, on straight lines between them.
+// keyframes say, on straight lines between them. With a density it floats: that is how it moves at the start, and fluid, gravity and
+// what it runs into do the rest.
 struct Solid : Form {
     std::string name;                           // of its columns in time series; "" = solid0, solid1, ...
     Vec3 velocity{0, 0, 0};                     // m/s
@@ -64,7 +66,50 @@ struct Solid : Form {
     Axis spinAxis = Axis::Z;                    // through its middle; keyframes turn about it too
     Keyframes keyframes;                        // in the order of their times
     std::string motion;                         // a CSV that becomes the keyframes when the scene is read
-    bool moves() const { return !keyframes.empty() || velocity != Vec3{} || spin != 0; }
+    float density = 0;                          // kg/m^3 of one that floats, 0 = it moves as prescribed
+    float friction = 0.3f;                      // Coulomb's coefficient where one that floats touches walls and other solids
+    bool floats() const { return density > 0; }
+    bool moves() const { return !keyframes.empty() || velocity != Vec3{} || spin != 0 || floats(); }
+};
+
+// An elastic object: particles on a lattice, and bonds between them that are springs. It meets fluid, itself and other objects by contact forces. A block
+// reads min and max, a sheet too: it is flat along the axis on which they are the same. A tube, open at both ends, reads center, radius, height and axis.
+struct Object {
+    ObjectShape shape = ObjectShape::Block;
+    Vec3 min{0, 0, 0}, max{0.5f, 0.5f, 0.5f};   // m
+    Vec3 center{0.5f, 0.5f, 0.5f};              // m
+    float radius = 0.1f;                        // m, to the middle of the wall
+    float height = 0.5f;                        // m
+    Axis axis = Axis::X;
+    float thickness = 0.01f;                    // m, of a sheet or a tube's wall: one layer of particles, or more where it is thicker than a spacing
+    float spacing = 0;                          // m, of its particles, 0 = simulation.spacing
+    float density = 1000;                       // kg/m^3
+    float youngsModulus = 1e5f;                 // Pa
+    float damping = 0.1f;                       // of bonds, share of the critical one
+    float breakingStrain = 0;                   // at which bonds break, 0 = never
+    Vec3 velocity{0, 0, 0};                     // m/s, at the start
+};
+
+// Holds those of the objects' particles that are in its box at the start: where they are, or it moves them as its keyframes say.
+struct Grip {
+    Vec3 min{0, 0, 0}, max{0.1f, 0.1f, 0.1f};   // m
+    Vec3 velocity{0, 0, 0};                     // m/s, with which it goes on and on
+    Keyframes keyframes;
+};
+
+// A blade: breaks the bonds whose middles are in its box at that time.
+struct Cut {
+    float time = 0;                             // s
+    Vec3 min{0, 0, 0}, max{0.1f, 0.1f, 0.1f};   // m
+};
+
+// Contact of fluid with objects, and of objects with each other (discrete element method).
+struct Contact {
+    float influence = 1.5f;                     // fluid is kept so many times the sum of two particles' radii away
+    float stiffness = 0;                        // N/m, 0 = what the time step bears
+    float steepness = 2;                        // the spring is exp(steepness (1 - distance / reach)) times as stiff
+    float damping = 0.1f;                       // share of the critical one
+    float shear = 0.1f;                         // the same, along the surface
 };
 
 struct Window {
@@ -205,6 +250,10 @@ struct Scene {
     Domain domain;
     Walls walls;
     std::vector<Solid> solids;
+    std::vector<Object> objects;
+    std::vector<Grip> grips;
+    std::vector<Cut> cuts;
+    Contact contact;
     Fluid fluid;
     TimeKnobs time;
     View view;

@@ -33,7 +33,7 @@ constexpr auto enumNames(EquationOfState) { return std::array{"tait", "linear"};
 constexpr auto enumNames(WallKind) { return std::array{"reflect", "particles"}; }
 constexpr auto enumNames(TimeMode) { return std::array{"fixed", "cfl", "local"}; }
 constexpr auto enumNames(Integrator) {
-    return std::array{"symplectic_euler", "velocity_verlet", "predictor_corrector"};
+    return std::array{"symplectic_euler", "velocity_verlet", "predictor_corrector", "split"};
 }
 constexpr auto enumNames(Shape) { return std::array{"block", "sphere", "cylinder", "wedge", "file"}; }
 constexpr auto enumNames(Axis) { return std::array{"x", "y", "z"}; }
@@ -52,6 +52,7 @@ constexpr auto enumNames(Face) {
 constexpr auto enumNames(RangeMode) { return std::array{"frame", "run", "fixed"}; }
 
 constexpr auto enumNames(ProbeKind) { return std::array{"point", "line", "height", "front"}; }
+constexpr auto enumNames(ObjectShape) { return std::array{"block", "sheet", "tube"}; }
 constexpr auto enumNames(Order) { return std::array{"mean", "linear"}; }
 
 // Which knobs a shape has depends on which it is; that is visited first, so that a reader has set it before the others are chosen.
@@ -103,7 +104,7 @@ requires std::is_same_v<std::remove_const_t<S>, Solid>
 void visitMember(S& s, const std::string& at, Visitor&& visit) {
     visitForm(s, at, visit);
     visit(at + ".name", s.name, Knob{"", 0, 0, "of its columns in time series", Restart});
-    visit(at + ".velocity", s.velocity, Knob{"m/s", -1e3f, 1e3f, "with which it goes on and on", Restart});
+    visit(at + ".velocity", s.velocity, Knob{"m/s", -1e3f, 1e3f, "with which it goes on and on; of one that floats at the start", Restart});
     visit(at + ".spin", s.spin, Knob{"degrees/s", -1e5f, 1e5f, "turns about its middle", Restart});
     visit(at + ".spin_axis", s.spinAxis, Knob{"", 0, 0, "direction of the axis that it turns about", Restart});
     visit(at + ".keyframes", s.keyframes,
@@ -113,6 +114,47 @@ void visitMember(S& s, const std::string& at, Visitor&& visit) {
                Restart});
     visit(at + ".motion", s.motion,
           Knob{"", 0, 0, "CSV with the keyframes, columns t, x, y, z or t, vx, vy, vz, and turn if it turns", Restart});
+    visit(at + ".density", s.density,
+          Knob{"kg/m^3", 0, 1e5f, "lets it float: fluid, gravity and what it touches move it, velocity and spin are those at the start; 0 = it moves as prescribed", Restart});
+    visit(at + ".friction", s.friction, Knob{"", 0, 10, "of what floats: Coulomb's coefficient where it touches walls and other solids; the lower one counts", Restart});
+}
+
+template <class O, class Visitor>
+requires std::is_same_v<std::remove_const_t<O>, Object>
+void visitMember(O& o, const std::string& at, Visitor&& visit) {
+    visit(at + ".shape", o.shape, Knob{"", 0, 0, "block, sheet (flat along the axis on which min and max are the same) or tube, open at both ends", Restart});
+    if (o.shape == ObjectShape::Tube) {
+        visit(at + ".center", o.center, Knob{"m", -1e4f, 1e4f, "centre", Restart});
+        visit(at + ".radius", o.radius, Knob{"m", 1e-6f, 1e4f, "to the middle of the wall", Restart});
+        visit(at + ".height", o.height, Knob{"m", 1e-6f, 1e4f, "length along the axis", Restart});
+        visit(at + ".axis", o.axis, Knob{"", 0, 0, "direction of the axis", Restart});
+    } else {
+        visit(at + ".min", o.min, Knob{"m", -1e4f, 1e4f, "lower corner", Restart});
+        visit(at + ".max", o.max, Knob{"m", -1e4f, 1e4f, "upper corner", Restart});
+    }
+    if (o.shape != ObjectShape::Block)
+        visit(at + ".thickness", o.thickness, Knob{"m", 1e-6f, 1e3f, "of its wall: one layer of particles, more where it is thicker than a spacing", Restart});
+    visit(at + ".spacing", o.spacing, Knob{"m", 0, 10, "of its particles, 0 = simulation.spacing", Restart});
+    visit(at + ".density", o.density, Knob{"kg/m^3", 1e-3f, 1e5f, "of what it is made of", Restart});
+    visit(at + ".youngs_modulus", o.youngsModulus, Knob{"Pa", 0, 1e12f, "how stiff it is; Poisson's ratio is 1/4, of a single layer 1/3", Restart});
+    visit(at + ".damping", o.damping, Knob{"", 0, 2, "of its bonds, share of the critical one", Restart});
+    visit(at + ".breaking_strain", o.breakingStrain, Knob{"", 0, 1e3f, "at which bonds break for good, 0 = never", Restart});
+    visit(at + ".velocity", o.velocity, Knob{"m/s", -1e3f, 1e3f, "initial velocity", Restart});
+}
+template <class G, class Visitor>
+requires std::is_same_v<std::remove_const_t<G>, Grip>
+void visitMember(G& g, const std::string& at, Visitor&& visit) {
+    visit(at + ".min", g.min, Knob{"m", -1e4f, 1e4f, "lower corner", Restart});
+    visit(at + ".max", g.max, Knob{"m", -1e4f, 1e4f, "upper corner", Restart});
+    visit(at + ".velocity", g.velocity, Knob{"m/s", -1e3f, 1e3f, "with which it goes on and on", Restart});
+    visit(at + ".keyframes", g.keyframes, Knob{"", -1e4f, 1e4f, "where it is when, relative to its place here: [[t, x, y, z], ...] in s and m", Restart});
+}
+template <class C, class Visitor>
+requires std::is_same_v<std::remove_const_t<C>, Cut>
+void visitMember(C& c, const std::string& at, Visitor&& visit) {
+    visit(at + ".time", c.time, Knob{"s", 0, 1e6f, "when it cuts", Restart});
+    visit(at + ".min", c.min, Knob{"m", -1e4f, 1e4f, "lower corner", Restart});
+    visit(at + ".max", c.max, Knob{"m", -1e4f, 1e4f, "upper corner", Restart});
 }
 
 template <class P, class Visitor>
@@ -150,6 +192,9 @@ template <class S, class Visitor>
 requires std::is_same_v<std::remove_const_t<S>, Scene>
 void visitLists(S& scene, Visitor&& visit) {
     visit("solids", scene.solids, "obstacles");
+    visit("objects", scene.objects, "elastic objects");
+    visit("grips", scene.grips, "what holds or moves parts of objects");
+    visit("cuts", scene.cuts, "blades that cut objects");
     visit("fluid.bodies", scene.fluid.bodies, "bodies of fluid");
     visit("output.probes", scene.output.probes, "gauges whose readings are columns of the time series");
 }
@@ -157,11 +202,15 @@ void visitLists(S& scene, Visitor&& visit) {
 // One member for each shape, or kind: together they have every knob of their list.
 inline Shape& kindOf(Form& f) { return f.shape; }
 inline ProbeKind& kindOf(Probe& p) { return p.kind; }
+inline ObjectShape& kindOf(Object& o) { return o.shape; }
 template <class Member> std::vector<Member> oneOfEachKind() {
-    using Kind = std::decay_t<decltype(kindOf(std::declval<Member&>()))>;
-    std::vector<Member> members(enumNames(Kind()).size());
-    for (size_t k = 0; k < members.size(); ++k) kindOf(members[k]) = Kind(k);
-    return members;
+    if constexpr (!requires(Member& m) { kindOf(m); }) return std::vector<Member>(1);
+    else {
+        using Kind = std::decay_t<decltype(kindOf(std::declval<Member&>()))>;
+        std::vector<Member> members(enumNames(Kind()).size());
+        for (size_t k = 0; k < members.size(); ++k) kindOf(members[k]) = Kind(k);
+        return members;
+    }
 }
 
 namespace schema {
@@ -171,6 +220,14 @@ void visitMembers(S& list, const std::string& path, Visitor&& visit) {
     for (size_t i = 0; i < list.size(); ++i) visitMember(list[i], path + "[" + std::to_string(i) + "]", visit);
 }
 
+template <class C, class Visitor>
+void visitContact(C& c, Visitor&& visit) {
+    visit("contact.influence", c.influence, Knob{"", 0.5f, 3, "of objects: fluid is kept so many times the sum of two particles' radii away", Restart});
+    visit("contact.stiffness", c.stiffness, Knob{"N/m", 0, 1e9f, "of the spring between two particles, 0 = what the time step bears"});
+    visit("contact.steepness", c.steepness, Knob{"", 0, 4, "the spring is exp(steepness (1 - distance / reach)) times as stiff"});
+    visit("contact.damping", c.damping, Knob{"", 0, 2, "of contacts, share of the critical one; none where a bond is broken"});
+    visit("contact.shear", c.shear, Knob{"", 0, 2, "the same, of motion along the surface"});
+}
 
 template <class S, class Visitor>
 void visitProgram(S& s, Visitor&& visit) {
@@ -261,8 +318,9 @@ void visitPhysics(S& s, Visitor&& visit) {
     visit("time.mode", s.time.mode, Knob{"", 0, 0, "fixed step, the largest that is good for all, or local: each particle's own, and rest for who is calm"});
     visit("time.integrator", s.time.integrator,
           Knob{"", 0, 0,
-               "symplectic_euler: first order; velocity_verlet: second order for the same work, of carried density "
-               "nearly; predictor_corrector: second order, evaluates everything twice a step",
+               "symplectic_euler (semi-implicit): first order; velocity_verlet: second order for the same work, of carried density "
+               "nearly; predictor_corrector: second order, evaluates everything twice a step; split: first order, viscosity and "
+               "external forces first, then the pressure that follows from them, for delta_sph",
                Restart});
     visit("time.step", s.time.step, Knob{"s", 1e-8f, 1, "time step when fixed"});
     visit("time.cfl", s.time.cfl, Knob{"", 0.01f, 1, "Courant number: share of the stable step"});
@@ -374,6 +432,10 @@ void visitKnobs(S& scene, Visitor&& visit) {
     schema::visitProgram(scene, visit);
     schema::visitPhysics(scene, visit);
     schema::visitMembers(scene.solids, "solids", visit);
+    schema::visitMembers(scene.objects, "objects", visit);
+    schema::visitMembers(scene.grips, "grips", visit);
+    schema::visitMembers(scene.cuts, "cuts", visit);
+    schema::visitContact(scene.contact, visit);
     schema::visitFluid(scene, visit);
     schema::visitMembers(scene.fluid.bodies, "fluid.bodies", visit);
     schema::visitPicture(scene, visit);

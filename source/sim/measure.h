@@ -26,13 +26,15 @@ template <class Device> Measurement SimulationOn<Device>::measure() {
     m.finite = t.notFinite == 0;
     if (solids_.moves()) moveSolids();   // to where the fluid is since the last step
     const std::vector<SolidState> solids = solids_.download();
+    if (solids_.count() > 0) (this->*findLoads_)();
     for (int s = 0; s < solids_.count(); ++s) {
-        const SolidLoad load = (this->*measureLoads_)(s);
+        const SolidLoad load = device_.template sum<SolidLoad>(walls_.slots(), solids_.sumOf(view(), s));
         auto scaled = [&](const double* a) { return mass * Vec3d{a[0], a[1], a[2]}; };
-        const Vector<real> at = solids[size_t(s)].middle;
+        auto vec = [](Vector<real> a) { return Vec3d{a.x, a.y, a.z}; };
+        const SolidState& state = solids[size_t(s)];
         const std::string& name = scene_.solids[size_t(s)].name;
         m.solids.push_back({name.empty() ? "solid" + std::to_string(s) : name,
-                            Vec3d{at.x, at.y, at.z} + toDouble(scene_.domain.min), scaled(load.pressure),
+                            vec(state.middle) + toDouble(scene_.domain.min), vec(state.velocity), vec(state.spin), scaled(load.pressure),
                             scaled(load.other), scaled(load.torque)});
     }
     return m;

@@ -21,11 +21,14 @@ template <class R> HD inline R nearestImage(R r, real period, real inversePeriod
     return negMulAdd(nearestInteger(periods), R(period), r);
 }
 
+template <class R> HD inline Vector<R> imageOf(const Constants& c, Vector<R> r) {
+    if (!c.periodic) return r;
+    return {nearestImage(r.x, c.period.x, c.inversePeriod.x), nearestImage(r.y, c.period.y, c.inversePeriod.y),
+            nearestImage(r.z, c.period.z, c.inversePeriod.z)};
+}
+
 template <class R> HD inline Pair<R> makePair(const Constants& c, Vector<R> xi, Vector<R> xj) {
-    Vector<R> r = xi - xj;
-    if (c.periodic)
-        r = {nearestImage(r.x, c.period.x, c.inversePeriod.x), nearestImage(r.y, c.period.y, c.inversePeriod.y),
-             nearestImage(r.z, c.period.z, c.inversePeriod.z)};
+    const Vector<R> r = imageOf(c, xi - xj);
     const R d2 = dot(r, r);
     return {r, d2, squareRoot(d2 * R(c.inverseSupport2)), reciprocal(d2 + R(c.eta2))};
 }

@@ -6,12 +6,13 @@
 #include "sim/passes.h"
 #include "sim/simulation.h"
 
+#include <numeric>
 #include <utility>
 #include <vector>
 
 namespace spindrift::LANES {
 
-enum class Kind { Fluid, Walls };
+enum class Kind { Fluid, Walls, Objects };   // of objects just places: the rest is elsewhere
 
 template <class Device> class ParticleSet {
 public:
@@ -31,12 +32,18 @@ public:
     // are carried.
     void upload(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities, const std::vector<float>& densities,
                 int firstId) {
+        std::vector<int> ids(positions.size());
+        std::iota(ids.begin(), ids.end(), firstId);
+        upload(positions, velocities, densities, ids);
+    }
+    void upload(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities, const std::vector<float>& densities,
+                const std::vector<int>& ids) {
         const int n = int(positions.size());
         resize((n + clusterSize - 1) / clusterSize * clusterSize);
         std::vector<real> x(vectorSize(slots_)), u(vectorSize(slots_)), rho(densities.begin(), densities.end());
         std::vector<int> id(slots_, -1);
         for (int i = 0; i < n; ++i) {
-            id[i] = firstId + i;
+            id[i] = ids[i];
             for (int k = 0; k < 3; ++k) {
                 x[vectorOffset(i, k)] = positions[i][k];
                 if (kind_ == Kind::Fluid) u[vectorOffset(i, k)] = velocities[i][k];
@@ -188,6 +195,7 @@ private:
         slots_ = slots;
         id_.resize(slots);
         position_.resize(vectorSize(slots));
+        if (kind_ == Kind::Objects) return;
         pressureTerm_.resize(slots);
         if (carriesVelocity_) velocity_.resize(vectorSize(slots));
         if (hasDensity_) density_.resize(slots);

@@ -184,9 +184,9 @@ template <class R> struct Correction {
     }
 };
 
-// a_i = body force + m gradientNorm/R^5 times the sum of the scene's terms, corrected where the terms ask for it. With `Added` just the sum, on top of
-// what acceleration is already.
-enum class Forces { All, Added };
+// a_i = body force + m gradientNorm/R^5 times the sum of the scene's terms, corrected where the terms ask for it. With `Alone` just the sum, with
+// `Added` on top of what acceleration is already.
+enum class Forces { All, Alone, Added };
 template <class Kernel, Lists lists, class Terms, Forces role = Forces::All> struct ComputeForces;
 template <class Kernel, Lists which, class... Terms, Forces role> struct ComputeForces<Kernel, which, TermList<Terms...>, role> {
     static constexpr Lists lists = which;
@@ -222,6 +222,7 @@ template <class Kernel, Lists which, class... Terms, Forces role> struct Compute
             other = correction.perTrace * other;
         }
         if constexpr (role == Forces::Added) return store(v.fluid.acceleration, i, load(v.fluid.acceleration, i) + pressure + other);
+        if constexpr (role == Forces::Alone) return store(v.fluid.acceleration, i, limited(pressure) + other);
         store(v.fluid.acceleration, i, limited(pressure) + other + bodyForce(v.c, gravity, x));
     }
     // For lists with each pair once (PairSums), where no part of the acceleration is limited.
@@ -418,10 +419,12 @@ struct ChooseTimeStep {
     HD void operator()(int) const {
         const Constants& c = v.c;
         double dt = c.fixedStep;
+        real solids = 0;   // that float
+        for (int s = 0; s < v.solidCount; ++s) solids = max(solids, v.solids[s].speed);
         const real speed = squareRoot(real(extremes->speed2));
         if (dt <= 0) {
             const real pull = squareRoot(real(extremes->acceleration2));
-            const real fastest = min(acousticStep(c, speed), c.maxStep);
+            const real fastest = min(acousticStep(c, max(speed, solids)), c.maxStep);
             dt = untilStop(*v.state, min(fastest, real(0.25) * squareRoot(c.support / 2 / max(pull, real(1e-12)))));
         }
         v.state->dt = dt;

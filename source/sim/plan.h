@@ -17,14 +17,17 @@ template <class Device> template <class K> void SimulationOn<Device>::makePlan()
             }
             evaluateForces<K>(Initial::Yes);
             chooseStep();
+            moveThings(&S::template moveFloating<2, true>);
             advance<K, Kick, Drift>({"integrate", "kick", "drift"});
             break;
         // Verlet 1967 with velocities: forces at the end of the step with the velocity foreseen there, of which then half is
         // taken back for half of the new acceleration.
         case Integrator::VelocityVerlet:
             chooseStep();
+            moveThings(&S::template moveFloating<1, true>);
             advance<K, HalfKick, Drift | KeepVelocity | KickOn>({"integrate", "kick", "drift"});
             evaluateForces<K>(Initial::Yes);
+            addPass("floating solids", &S::template moveFloating<1, false>, Initial::No, whyNothingFloats());
             addPass("second kick", &S::template onFluid<Integrate<Resume | HalfKick>>);
             break;
         // Half a step ahead; from there the forces and then, with the mean velocity, the rates of the whole step (Monaghan 1989;
@@ -35,13 +38,28 @@ template <class Device> template <class K> void SimulationOn<Device>::makePlan()
             advance<K, 0, Keep | HalfDrift | KickOn>({"predict", "", "predict"});
             evaluateForces<K>(Initial::No);
             addPass("extremes", &S::countCorrection, Initial::No, keepsLists ? "" : noLists);
+            moveThings(&S::template moveFloating<2, true>);
             advance<K, Resume | HalfKick, Resume | Drift | KickOn>({"correct", "second kick", "correct"});
+            break;
+        // Viscosity and external forces lead to the densities of whose pressure the rest of the step is.
+        case Integrator::Split:
+            evaluateForces<K>(Initial::Yes);
+            chooseStep();
+            moveThings(&S::template moveFloating<2, true>);
+            addPass("kick", &S::template onFluid<Integrate<Kick>>);
+            addPass("density rate", ratePass<K>());
+            addPass("foresee density", &S::template onFluid<Integrate<DriftDensity>>);
+            addPass("equation of state", &S::template onFluid<ApplyEquationOfState>);
+            addPass("walls", wallPass<K>(), Initial::No, whyNoWallPressure());
+            addPass("pressure", &S::template onFluid<ComputeForces<K, Lists::Pruned, TermList<PressureForce>, Forces::Alone>>);
+            addPass("extremes", &S::countPressure, Initial::No, keepsLists ? "" : noLists);
+            addPass("integrate", &S::template onFluid<Integrate<Kick | Drift>>);
             break;
     }
     noteTerms(OptionalTerms{});
     noteTerms(Mixing{});
     addPass("solid collisions", &S::template onFluid<KeepOutOfSolids>, Initial::No, solids_.count() > 0 ? "" : "there are no solids");
-    measureLoads_ = loadPass<K>();
+    findLoads_ = loadPass<K>();
     sortsInStep_ = int(std::count_if(plan_.begin(), plan_.end(), [](const Row& row) { return row.run == &S::sort; }));
     for (Row& row : plan_) row.time = timeOf(row.name);
 }
@@ -64,8 +82,17 @@ template <class Device> template <class K> void SimulationOn<Device>::evaluateFo
     addPass("surface tension", &S::template onFluid<AddSurfaceTension>, initial, noTension);
     addPass("mixing", pairPass<ComputeForces<MeanKernel, Lists::Pruned, Mixing, Forces::Added>>(), initial,
             mixes(scene_) ? "" : "fluid.velocity_transfer and fluid.buoyancy are 0");
+    addPass("solid forces", &S::findSolidForces, initial, whyNothingFloats());
+    addPass("contact", &S::touchObjects, initial, whyNoObjects());
     addPass("resistance", &S::template onFluid<ResistMotion>, initial, scene_.fluid.dissipation + scene_.fluid.airDensity > 0 ? "" :
             "fluid.dissipation and fluid.air_density are 0");
+}
+
+// Solids and objects, by the forces that were found last; also those that the mouse drags.
+template <class Device> void SimulationOn<Device>::moveThings(PassFunction moveSolids) {
+    using S = SimulationOn;
+    addPass("floating solids", moveSolids, Initial::No, hold_.solid >= 0 ? "" : whyNothingFloats());
+    addPass("objects", &S::moveObjects, Initial::No, whyNoObjects());
 }
 
 // Symplectic Euler from one moment to the next at which anybody is due.
@@ -114,6 +141,7 @@ template <class Device> template <class K> auto SimulationOn<Device>::forcePass(
     if (fillsSpace())
         return *LaminarViscosity::skipped(scene_) ? forces<K, Lists::Prune>(TermList<CorrectedPressureForce>{})
                                                   : forces<K, Lists::Prune>(TermList<CorrectedPressureForce, LaminarViscosity>{});
+    if (scene_.time.integrator == Integrator::Split) return forces<K, Lists::Prune>(Viscosities{});
     if (isMixture(scene_)) {
         using Terms = TermList<PressureForce, MixtureViscosity>;
         return carriesDensity(scene_) ? forces<K, Lists::Prune>(Terms{}) : pairPass<ComputeForces<K, Lists::Pruned, Terms>>();
@@ -131,10 +159,10 @@ template <class Device> template <class K> auto SimulationOn<Device>::forcePass(
 
 // What fluid does to solids, by the terms that act on the fluid. (Corrected gradients have no opposite: their pressure is taken as it is
 // without.)
-template <class Device> template <class K> auto SimulationOn<Device>::loadPass() const {
+template <class Device> template <class K> auto SimulationOn<Device>::loadPass() const -> PassFunction {
     using Mixed = TermList<PressureForce, MixtureViscosity>;
-    if (isMixture(scene_)) return &SimulationOn::template loads<ComputeWallLoads<K, Mixed>>;
-    return chooseTerms(scene_, [](auto terms) { return &SimulationOn::template loads<ComputeWallLoads<K, decltype(terms)>>; },
+    if (isMixture(scene_)) return &SimulationOn::template findLoads<ComputeWallLoads<K, Mixed>>;
+    return chooseTerms(scene_, [](auto terms) { return PassFunction(&SimulationOn::template findLoads<ComputeWallLoads<K, decltype(terms)>>); },
                        TermList<PressureForce>{}, Viscosities{});
 }
 

@@ -2,6 +2,8 @@
 // What a run carries from step to step, and what its constants were derived from: another device that starts from it
 // goes on exactly.
 #include "scene/particles.h"
+#include "sim/object_state.h"
+#include "sim/solid_motion.h"
 #include "sim/step_state.h"
 
 namespace spindrift {
@@ -11,6 +13,8 @@ struct RunState {
     StepState clock;
     FluidExtent start;
     std::vector<float> densities;   // kg/m^3, where they are carried; empty at the beginning, when pressures say
+    std::vector<SolidMotion> solids;   // one for each, where any floats or has been dragged; otherwise, and at the beginning, empty
+    ObjectState objects;
 
     RunState() = default;
     // The beginning of a run.

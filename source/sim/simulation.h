@@ -4,7 +4,9 @@
 #include "core/vec.h"
 #include "core/vertex.h"
 #include "scene/scene.h"
+#include "sim/object_driver.h"
 #include "sim/run_state.h"
+#include "sim/solid_motion.h"
 
 #include <cstdint>
 #include <memory>
@@ -24,6 +26,7 @@ struct Range { float min, max; };
 struct SolidMeasurement {
     std::string name;                      // the scene's, or solid0, solid1, ...
     Vec3d position;                        // m, of its middle, world coordinates
+    Vec3d velocity, spin;                  // m/s, of its middle; rad/s
     Vec3d pressureForce, viscousForce;     // N
     Vec3d torque;                          // N m, about its middle
 };
@@ -62,6 +65,12 @@ public:
     // Takes over live knobs (schema.h says which); restart knobs must be unchanged.
     virtual void apply(const Scene&) = 0;
     virtual void stir(const Stir&) = 0;
+    // Until the next call the solid is pulled to where the mouse wants it, whatever moves it otherwise; none: let go. In local steps nobody can.
+    virtual void hold(const Hold&) = 0;
+    // The solid whose surface is within a spacing of a point (m, world coordinates), or -1.
+    virtual int solidAt(Vec3d point) = 0;
+    // From now on somebody else's engine moves the elastic objects (object_driver.h); null: they move by themselves again. Not owned.
+    virtual void drive(ObjectDriver*) = 0;
     // Steps from now on end at this time (s) exactly instead of reaching beyond it, if they aren't of fixed length.
     virtual void stopAt(double time) = 0;
 
@@ -70,9 +79,12 @@ public:
     virtual int wallCount() const = 0;
     // The first of the boundary particles belong to solids.
     virtual int solidParticleCount() const = 0;
-    // Fills out[id] for every fluid particle, and for the first `walls` of the boundary particles. `out` must hold
-    // fluidCount + walls vertices; memory of cudaDevice() is written by a kernel, host memory of a GPU run by one
-    // copy. Returns the range of the fluid's values. Boundary value: 1 of a solid, 0 of the domain's walls.
+    // Of elastic objects, in the order of sampleObjects().
+    virtual int objectParticleCount() const = 0;
+    // Fills out[id] for every fluid particle, and for the first `walls` of the boundary particles; those of objects follow. `out` must hold
+    // fluidCount + walls + objectParticleCount vertices; memory of cudaDevice() is written by a kernel, host memory of a GPU run by one
+    // copy. Returns the range of the fluid's values. Boundary value: 1 of a solid, 0 of the domain's walls, of objects
+    // 2 + their radius / that of a fluid particle.
     virtual Range writeVertices(VertexMemory out, ColorBy, int walls) = 0;
 
     // What it comes to, which takes a look at all particles; and the time alone.

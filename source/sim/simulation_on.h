@@ -4,8 +4,10 @@
 
 #include "device/buffer.h"
 #include "sim/constants.h"
+#include "sim/floating.h"
 #include "sim/integrate.h"
 #include "sim/local_steps.h"
+#include "sim/objects.h"
 #include "sim/output_passes.h"
 #include "sim/particle_set.h"
 #include "sim/passes.h"
@@ -35,6 +37,8 @@ public:
         walls_.upload(wallsAtHome_, {}, {}, fluidCount_);
         solids_.place(scene, wallsAtHome_, solidSizes_, fluidCount_);
         if (wallsMove()) walls_.move();
+        if (solids_.floats()) solids_.reserveLoads(walls_.slots());
+        objects_.place(scene);
         clock_.resize(1);
         extremes_.resize(1);
         apply(scene);
@@ -50,7 +54,10 @@ public:
         clock.speed = 0;   // a checkpoint doesn't know it
         device_.upload(clock_.data(), &clock, 1);
         wake();
+        if (std::any_of(state.solids.begin(), state.solids.end(), [](const SolidMotion& m) { return m.place != Vec3d{}; })) letSolidsMove();
         if (solids_.moves()) walls_.upload(wallsAtHome_, {}, {}, fluidCount_);
+        if (solids_.count() > 0) floating_.place(scene_, longestStep(), state.solids);
+        objects_.restart(scene_, state.objects);
         travel_ = 1e30;
         // Density and acceleration of the first picture.
         for (Row& row : plan_)
@@ -64,6 +71,28 @@ public:
     }
     void stir(const Stir& s) override {
         stir_ = s;
+        refresh(scene_);
+    }
+    void hold(const Hold& h) override {
+        CHECK(h.solid < solids_.count());
+        if (h.solid >= 0) letSolidsMove();
+        hold_ = {h.solid, h.target - scene_.domain.min};
+        refresh(scene_);
+    }
+    int solidAt(Vec3d point) override {
+        const std::vector<SolidState> solids = solids_.download();
+        const Vec3d x = point - toDouble(scene_.domain.min);
+        for (size_t s = 0; s < solids.size(); ++s) {
+            const Vector<real> arm = Vector<real>{real(x.x), real(x.y), real(x.z)} - solids[s].middle;
+            Vector<real> n{0, 0, 0};
+            const Vector<real> own{dot(arm, solids[s].axis[0]), dot(arm, solids[s].axis[1]), dot(arm, solids[s].axis[2])};
+            if (nearest(solids[s], own, n) < scene_.simulation.spacing) return int(s);
+        }
+        return -1;
+    }
+    void drive(ObjectDriver* driver) override {
+        CHECK(objects_.count() > 0 && (!driver || driver->interval() > 0));
+        objects_.drive(driver, clock().time, scene_.domain.min);
         refresh(scene_);
     }
     void stopAt(double time) override { device_.upload(&clock_.data()->stop, &time, 1); }
@@ -83,10 +112,12 @@ public:
 
     int solidParticleCount() const override { return std::accumulate(solidSizes_.begin(), solidSizes_.end(), 0); }
 
+    int objectParticleCount() const override { return objects_.count(); }
+
     Range writeVertices(VertexMemory out, ColorBy by, int walls) override {
         if (out.device == device_.index()) return writeVertices(out.data, by, walls);
         CHECK(out.device == hostMemory);
-        const int count = fluidCount_ + walls;
+        const int count = fluidCount_ + walls + objects_.count();
         staging_.resize(count);
         const Range range = writeVertices(staging_.data(), by, walls);
         device_.download(out.data, staging_.data(), count);
@@ -105,6 +136,8 @@ public:
         s.clock = clock();
         s.start = extent_;
         s.densities = fluid_.densities(fluidCount_);
+        if (solids_.moves()) s.solids = floating_.download();
+        if (objects_.count() > 0) s.objects = objects_.state();
         return s;
     }
     std::vector<Particle> particles() override { return fluid_.download(fluidCount_, scene_.domain.min); }
@@ -115,7 +148,7 @@ public:
     int64_t bytes() const override {
         int64_t lists = 0;
         for (const NeighbourLists* l : {&fluidNearFluid_, &wallsNearFluid_, &fluidNearWalls_}) lists += l->bytes();
-        return device_.bytes() + lists + pairSums_.bytes();
+        return device_.bytes() + lists + objects_.listBytes() + pairSums_.bytes();
     }
 
     std::vector<PassTime> times() override {
@@ -160,6 +193,8 @@ private:
         withKernel(scene_.simulation.kernel, [&](auto kernel) {
             using K = decltype(kernel);
             constants_ = makeConstants<K>(scene_, extent_);
+            objects_.setLaw(scene_, constants_.soundSpeed);
+            constants_.maxStep = min(constants_.maxStep, real(objects_.longestStep()));
             makePlan<K>();
         });
         fluid_.addForces(pairsOnce() && mixes(scene_), scene_.fluid.surfaceTension > 0);
@@ -168,6 +203,9 @@ private:
         if (hasLocalSteps() && !localSteps_.used()) localSteps_.resize(grid_, real(2 * supportRadius(scene_) * (1 + scene_.compute.skin)));
         // A face slides at another speed, or walls are to know which way they face.
         if (sticksNow || (wallsMove() && !solids_.moves())) solids_.placeWalls(view());
+        outdateRecordings();
+    }
+    void outdateRecordings() {
         if constexpr (Device::recordsSteps)
             for (auto& recording : recordings_) recording.outdate();
     }
@@ -175,12 +213,13 @@ private:
     template <class K> void makePlan();
     template <class K> void evaluateForces(Initial);
     void chooseStep();
+    void moveThings(PassFunction moveSolids);
     struct Names { const char *both, *kick, *drift; };
     template <class K, unsigned kick, unsigned drift> void advance(Names);
     template <class K> void stepLocally();
     template <class K> PassFunction wallPass() const;
     template <class K> PassFunction forcePass() const;
-    template <class K> auto loadPass() const;
+    template <class K> PassFunction loadPass() const;
     template <class K> PassFunction ratePass() const;
     void addPass(const char* name, PassFunction run, Initial initial = Initial::No, const char* skipped = "") {
         const bool said = std::any_of(rows_.begin(), rows_.end(), [&](const PlanRow& r) { return r.name == name && !r.skipped.empty(); });
@@ -210,6 +249,8 @@ private:
     template <class... Ts> void noteTerms(TermList<Ts...>) {
         (rows_.push_back({std::string("forces: ") + Ts::name, Ts::skipped(scene_)}), ...);
     }
+    const char* whyNoObjects() const { return objects_.count() > 0 ? "" : "there are no objects"; }
+    const char* whyNothingFloats() const { return solids_.floats() ? "" : solids_.count() > 0 ? "no solid floats" : "there are no solids"; }
     const char* whyNoWallPressure() const {
         if (wallCount_ == 0) return "there are no boundary particles";
         return wallsCarryPressure() ? "" : "walls have no pressure in the classic formulation";
@@ -231,16 +272,18 @@ private:
         }
         do runPlan();
         while (hasLocalSteps() && clock().moment != 0);
+        if (objects_.isDriven() && objects_.exchange(clock().time)) outdateRecordings();
     }
     // There is nothing to be done but to let time pass. (A GPU would have to be asked.)
     bool allRest() { return !Device::recordsSteps && hasLocalSteps() && clock().allRest && stir_.radius <= 0 && !solids_.moves(); }
     // One recording for each side of the particles' buffers; walls are sorted only when they move.
     void stepFromRecording() {
-        auto& recording = recordings_[2 * walls_.side() + fluid_.side()];
+        auto& recording = recordings_[4 * objects_.side() + 2 * walls_.side() + fluid_.side()];
         if (device_.replay(recording)) {
             if (sortsInStep_ % 2 == 0) return;
             fluid_.flip();
             if (solids_.moves()) walls_.flip();
+            if (objects_.count() > 0) objects_.flip();
             return;
         }
         device_.record(recording, [&] {
@@ -275,8 +318,30 @@ private:
     }
 
     bool wallsCarryPressure() const { return wallCount_ > 0 && scene_.simulation.formulation != Formulation::Classic; }
+    // s, that a step can take.
+    double longestStep() const {
+        return constants_.fixedStep > 0 ? double(constants_.fixedStep) : double(min(acousticStep(constants_, 0), constants_.maxStep));
+    }
+    // Those that stood still until now as well: their particles are sorted and placed from here on.
+    void letSolidsMove() {
+        if (solids_.moves()) return;
+        solids_.keepMasses(walls_.view());
+        solids_.letMove();
+        walls_.move();
+        refresh(scene_);
+    }
     bool wallsMove() const { return solids_.moves() || (wallCount_ > 0 && scene_.walls.movingFace != Face::None); }
-    template <class Pass> SolidLoad loads(int solid) { return solids_.template load<Pass>(view(), solid, solid == 0); }
+    template <class Pass> void findLoads() { solids_.template findLoads<Pass>(view()); }
+    void touchObjects() { objects_.touch(view()); }
+    void moveObjects() { objects_.move(view()); }
+    void findSolidForces() {
+        (this->*findLoads_)();
+        const View v = view();
+        floating_.findForces(scene_, v, solids_.home(), [&](int solid) { return solids_.sumOf(v, solid); });
+    }
+    template <int halvesOfKick, bool drifts> void moveFloating() {
+        floating_.move(view(), particleMass(scene_), hold_, 0.5 * halvesOfKick, drifts ? 1 : 0);
+    }
     template <class Pass> void onFluid() { device_.forEach(fluid_.slots(), Pass{view()}); }
     template <class Pass> void onPairs() {
         pairSums_.run(device_, fluidNearFluid_, Pass{view()});
@@ -295,7 +360,7 @@ private:
     void moveSolids() { placeSolids(0); }
     void moveSolidsHalfWay() { placeSolids(0.5); }   // the clock is at the step's end
     void placeSolids(double stepsBack) {
-        solids_.move(clock_.data(), stepsBack);
+        solids_.move(clock_.data(), stepsBack, floating_.bodies(), floating_.motions());
         solids_.placeWalls(view());
     }
     void sort() {
@@ -310,6 +375,10 @@ private:
             solids_.placeWalls(view());   // all but their places, which the sort took along
             wallBoxes_.compute(device_, walls_.view());
         }
+        if (objects_.count() > 0) {
+            objects_.sort(grid_);
+            objects_.forgetLists(fluid_.view());
+        }
         for (NeighbourLists* lists : {&fluidNearFluid_, &wallsNearFluid_}) lists->forget(fluid_.view());
         fluidNearWalls_.forget(walls_.view());
         travel_ = travelBefore_ = 0;
@@ -320,16 +389,18 @@ private:
         const float reach = supportRadius(scene_) + skin_;
         fluidNearFluid_.build(device_, grid_, reach, boxes_, v.fluid.due, boxes_, fluid_.cellStart(), pairsOnce());
         wallsNearFluid_.build(device_, grid_, reach, boxes_, v.fluid.due, wallBoxes_, walls_.cellStart());
+        if (objects_.count() > 0) objects_.findNeighbours(grid_, skin_, boxes_, fluid_.cellStart());
         if (!wallsCarryPressure()) return;
         const uint8_t* due = solids_.count() > 0 ? nullptr : v.walls.due;
         fluidNearWalls_.build(device_, grid_, reach, wallBoxes_, due, boxes_, fluid_.cellStart());
     }
     template <bool volume> void findExtremes() {
         device_.reduce(fluid_.slots(), FindExtremes<volume>{fluid_.view(), constants_.restDensity}, extremes_.data());
+        if (objects_.count() > 0) objects_.findSpeed(clock_.data(), extremes_.data());
     }
     void chooseTimeStep() {
         device_.forEach(1, ChooseTimeStep{view(), extremes_.data()});
-        const double share = scene_.time.integrator == Integrator::PredictorCorrector ? 0.5 : 1;
+        const double share = scene_.time.integrator == Integrator::PredictorCorrector ? 0.5 : scene_.time.integrator == Integrator::Split ? 0 : 1;
         if constexpr (keepsLists) travel_ += share * clock_.data()->dt * largestSpeed(clock_.data()->dt);
     }
     void beginStep() { device_.forEach(1, BeginStep{view()}); }
@@ -362,6 +433,11 @@ private:
     }
     // From the middle of the step to its end, where the middle's accelerations lead: dt/2 v + dt^2/2 a, and a shift that may
     // turn round.
+    // Of the whole step, which before the pressure nobody knew.
+    void countPressure() {
+        findExtremes<false>();
+        if constexpr (keepsLists) travel_ += clock_.data()->dt * largestSpeed(clock_.data()->dt);
+    }
     void countCorrection() {
         findExtremes<false>();
         if constexpr (!keepsLists) return;
@@ -409,6 +485,7 @@ private:
         const View v = view();
         if (walls > 0)
             device_.forEach(v.walls.slots, WriteWallVertices{v.walls, out, fluidCount_ + solidParticleCount(), fluidCount_ + walls});
+        if (objects_.count() > 0) objects_.writeVertices(out + fluidCount_ + walls, scene_.simulation.spacing);
         switch (by) {
             case ColorBy::Plain: return write<PlainValue>(v.fluid, out);
             case ColorBy::Velocity: return write<SpeedValue>(v.fluid, out);
@@ -450,14 +527,17 @@ private:
     std::vector<PassTime> times_;
     ParticleSet<Device> fluid_{device_, Kind::Fluid}, walls_{device_, Kind::Walls};
     Solids<Device> solids_{device_};
-    SolidLoad (SimulationOn::*measureLoads_)(int) = nullptr;
+    Floating<Device> floating_{device_};
+    Objects<Device> objects_{device_};
+    Hold hold_;                 // target relative to the domain's lower corner
+    PassFunction findLoads_ = nullptr;
     Buffer<StepState, Device> clock_{device_};
     Buffer<Extremes, Device> extremes_{device_};
     LocalSteps<Device> localSteps_{device_};
     bool allDue_ = false;       // at this moment: flags are needless then
     Buffer<Vertex, Device> staging_{device_};   // for vertices that the host is to have
     bool measureNext_ = true;
-    typename Device::Recording recordings_[4];
+    typename Device::Recording recordings_[8];
     int sortsInStep_ = 1;       // each exchanges the particles' two sides of buffers
     static constexpr bool keepsLists = clusterSize > 1;
     static constexpr const char* allAlike = "all take the same steps (time.mode)";

@@ -6,6 +6,7 @@
 #include "scene/motion.h"
 #include "scene/sample_solid.h"
 #include "sim/neighbours.h"
+#include "sim/rigid.h"
 #include "sim/terms.h"
 
 namespace spindrift::LANES {
@@ -16,27 +17,42 @@ template <class R> HD inline Vector<R> turned(const SolidState& s, Vector<R> a) 
     return a.x * wide(s.axis[0]) + a.y * wide(s.axis[1]) + a.z * wide(s.axis[2]);
 }
 
-// Where a solid is now and how it moves: on straight lines between its keys. It does not accelerate but for an instant at each key.
+// Between keys [first, end): on straight lines, at rest before and after. m and radians, and those per second.
+struct KeyedMotion { Vec3d offset, velocity; double turn, turnRate; };
+HD inline KeyedMotion motionAt(const MotionKey* keys, int first, int end, double time) {
+    int next = first;
+    while (next < end && keys[next].time <= time) ++next;
+    const bool rests = next == first || next == end;
+    const MotionKey &from = keys[next == first ? next : next - 1], &to = keys[next == end ? next - 1 : next];
+    const double perSecond = rests ? 0 : 1 / (to.time - from.time), share = (time - from.time) * perSecond;
+    const Vec3d way = to.offset - from.offset;
+    return {from.offset + share * way, perSecond * way, from.turn + share * (to.turn - from.turn), (to.turn - from.turn) * perSecond};
+}
+
+// Where a solid is now and how it moves: on straight lines between its keys. It does not accelerate but for an instant at each key. What floats or
+// was dragged is where its motion says, which is still that of the step's beginning where the clock's time is its end.
 struct MoveSolids {
     using Index = int;
     SolidState* solids;
     const MotionKey* keys;
     const StepState* state;
     double stepsBack;   // from the clock's time
+    const RigidBody* bodies;
+    const SolidMotion* motions;
     HD void operator()(int i) const {
         SolidState& s = solids[i];
-        const double time = state->time - stepsBack * state->dt;
-        int next = s.firstKey;
-        while (next < s.endKey && keys[next].time <= time) ++next;
-        const bool rests = next == s.firstKey || next == s.endKey;
-        const MotionKey &from = keys[next == s.firstKey ? next : next - 1], &to = keys[next == s.endKey ? next - 1 : next];
-        const double perSecond = rests ? 0 : 1 / (to.time - from.time), share = (time - from.time) * perSecond;
-        auto between = [&](double a, double b) { return a + share * (b - a); };
-        s.middle = s.home + Vector<real>{real(between(from.offset.x, to.offset.x)), real(between(from.offset.y, to.offset.y)),
-                                         real(between(from.offset.z, to.offset.z))};
-        s.velocity = real(perSecond) * Vector<real>{real(to.offset.x - from.offset.x), real(to.offset.y - from.offset.y),
-                                                    real(to.offset.z - from.offset.z)};
-        turn(s, between(from.turn, to.turn), (to.turn - from.turn) * perSecond);
+        if (bodies[i].mass > 0) return placeFloating(s, bodies[i], motions[i], stepsBack * state->dt);
+        const KeyedMotion m = motionAt(keys, s.firstKey, s.endKey, state->time - stepsBack * state->dt);
+        s.middle = s.home + Vector<real>{real(m.offset.x), real(m.offset.y), real(m.offset.z)};
+        s.velocity = Vector<real>{real(m.velocity.x), real(m.velocity.y), real(m.velocity.z)};
+        turn(s, m.turn, m.turnRate);
+        addDragged(s, motions[i], stepsBack * state->dt);
+    }
+    HD static void addDragged(SolidState& s, const SolidMotion& m, double ahead) {
+        const Vec3d place = m.place + ahead * m.velocity;
+        s.middle = s.middle + Vector<real>{real(place.x), real(place.y), real(place.z)};
+        s.velocity = s.velocity + Vector<real>{real(m.velocity.x), real(m.velocity.y), real(m.velocity.z)};
+        s.speed = real(sqrt(dot(m.velocity, m.velocity)));
     }
     HD static void turn(SolidState& s, double angle, double rate) {
         const int k = s.spinAxis, y = (k + 1) % 3, z = (k + 2) % 3;
@@ -141,10 +157,7 @@ struct KeepOutOfSolids {
     }
     HD void leave(const SolidState& s, Vector<R>& x, Vector<R>& u) const {
         auto wide = [](Vector<real> b) LANE_CALL { return Vector<R>{b.x, b.y, b.z}; };
-        Vector<R> arm = x - wide(s.middle);
-        if (v.c.periodic)
-            arm = {nearestImage(arm.x, v.c.period.x, v.c.inversePeriod.x), nearestImage(arm.y, v.c.period.y, v.c.inversePeriod.y),
-                   nearestImage(arm.z, v.c.period.z, v.c.inversePeriod.z)};
+        const Vector<R> arm = imageOf(v.c, x - wide(s.middle));
         Vector<R> n{0, 0, 0};
         const Vector<R> own{dot(arm, wide(s.axis[0])), dot(arm, wide(s.axis[1])), dot(arm, wide(s.axis[2]))};
         const R depth = R(0) - nearest(s, own, n);
@@ -196,10 +209,11 @@ struct SumSolidLoad {
     WallsAtHome home;
     const SolidState* solids;
     int solid;
+    Constants c;
     HD void addTo(SolidLoad& sum, int i) const {
         if (walls.id[i] < 0 || home.solidOf(walls.id[i]) != solid) return;
         const Vector<real> p = load(pressure, i), o = load(other, i);
-        const Vector<real> torque = cross(load(walls.position, i) - solids[solid].middle, p + o);
+        const Vector<real> torque = cross(imageOf(c, load(walls.position, i) - solids[solid].middle), p + o);
         sum.add({{p.x, p.y, p.z}, {o.x, o.y, o.z}, {torque.x, torque.y, torque.z}});
     }
 };
@@ -217,6 +231,7 @@ inline SolidState solidAtHome(const Scene& scene, const Solid& solid) {
     s.planes = shape.planes;
     for (int k = 0; k < shape.planes; ++k) s.normal[k] = real3(shape.normal[k]), s.offset[k] = real(shape.offset[k]);
     s.radius = real(shape.radius), s.across = real3(shape.across);
+    s.reach = real(reachOf(solid));
     return s;
 }
 
@@ -238,6 +253,7 @@ public:
         }
         count_ = int(states.size()), firstId_ = firstId;
         moves_ = std::any_of(scene.solids.begin(), scene.solids.end(), [](const Solid& s) { return s.moves(); });
+        floats_ = std::any_of(scene.solids.begin(), scene.solids.end(), [](const Solid& s) { return s.floats(); });
         fill(states_, states), fill(keys_, keys);
         const Vec3 size = scene.domain.max - scene.domain.min;
         size_ = {real(size.x), real(size.y), real(size.z)};
@@ -245,22 +261,33 @@ public:
     }
     int count() const { return count_; }
     bool moves() const { return moves_; }
-    double largestSpeed() const { return speed_; }
+    bool floats() const { return floats_; }
+    void letMove() { moves_ = true; }   // from now on the mouse may drag them
+    // Of the host's solids, m/s.
+    double largestSpeed() const {
+        double most = speed_;
+        for (int s = 0; s < count_; ++s) most = std::max(most, double(states_.data()[s].speed));
+        return most;
+    }
     SolidState* data() { return states_.data(); }
 
-    void move(const StepState* state, double stepsBack) {
-        device_.forEach(count_, MoveSolids{states_.data(), keys_.data(), state, stepsBack});
+    void move(const StepState* state, double stepsBack, const RigidBody* bodies, const SolidMotion* motions) {
+        device_.forEach(count_, MoveSolids{states_.data(), keys_.data(), state, stepsBack, bodies, motions});
     }
     void placeWalls(const View& v) { device_.forEach(v.walls.slots, PlaceWalls{v, home()}); }
     void keepMasses(const Particles& walls) { device_.forEach(walls.slots, KeepWallMass{walls, home()}); }
 
-    template <class Pass> SolidLoad load(const View& v, int solid, bool first) {
-        if (first) {
-            for (auto* field : {&pressureLoad_, &otherLoad_}) field->resize(vectorSize(v.walls.slots));
-            device_.forEach(v.walls.slots, Pass{v, {pressureLoad_.data()}, {otherLoad_.data()}});
-        }
-        return device_.template sum<SolidLoad>(
-            v.walls.slots, SumSolidLoad{v.walls, {pressureLoad_.data()}, {otherLoad_.data()}, home(), states_.data(), solid});
+    // What fluid does to each of their particles, and the sum over those of one solid.
+    template <class Pass> void findLoads(const View& v) {
+        reserveLoads(v.walls.slots);
+        device_.forEach(v.walls.slots, Pass{v, {pressureLoad_.data()}, {otherLoad_.data()}});
+    }
+    SumSolidLoad sumOf(const View& v, int solid) {
+        return {v.walls, {pressureLoad_.data()}, {otherLoad_.data()}, home(), states_.data(), solid, v.c};
+    }
+    // A recorded step can't make room.
+    void reserveLoads(int slots) {
+        for (auto* field : {&pressureLoad_, &otherLoad_}) field->resize(vectorSize(slots));
     }
     std::vector<SolidState> download() {
         std::vector<SolidState> host(count_);
@@ -268,10 +295,11 @@ public:
         return host;
     }
 
-private:
     WallsAtHome home() {
         return {firstId_, solidOf_.data(), {position_.data()}, {mass_.data()}, size_};
     }
+
+private:
     template <class T> void fill(Buffer<T, Device>& buffer, const std::vector<T>& host) {
         buffer.resize(host.size());
         device_.upload(buffer.data(), host.data(), host.size());
@@ -297,7 +325,7 @@ private:
 
     Device& device_;
     int count_ = 0, firstId_ = 0;
-    bool moves_ = false;
+    bool moves_ = false, floats_ = false;
     double speed_ = 0;   // m/s
     Vector<real> size_{};
     Buffer<SolidState, Device> states_{device_};

@@ -165,6 +165,9 @@ struct SolidState {
     real offset[Convex::mostPlanes];
     real radius;
     Vector<real> across;
+    real reach;                    // m, from its middle to its farthest point
+    Vector<real> centreOfMass;     // m, of one that floats
+    real speed;                    // m/s, the most of its points, of one that floats or is dragged; otherwise 0: the scene knows it
 };
 
 struct View {

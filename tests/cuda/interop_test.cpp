@@ -38,10 +38,14 @@ public:
     void step(int n) override { s_.step(n); }
     void apply(const Scene& scene) override { s_.apply(scene); }
     void stir(const Stir& stir) override { s_.stir(stir); }
+    void hold(const Hold& hold) override { s_.hold(hold); }
+    int solidAt(Vec3d point) override { return s_.solidAt(point); }
+    void drive(ObjectDriver* driver) override { s_.drive(driver); }
     void stopAt(double time) override { s_.stopAt(time); }
     int fluidCount() const override { return s_.fluidCount(); }
     int wallCount() const override { return s_.wallCount(); }
     int solidParticleCount() const override { return s_.solidParticleCount(); }
+    int objectParticleCount() const override { return s_.objectParticleCount(); }
     StepState clock() override { return s_.clock(); }
     Measurement measure() override { return s_.measure(); }
     std::vector<Particle> particles() override { return s_.particles(); }

@@ -15,7 +15,7 @@ const std::vector<Control> controls = {
     {"Middle drag, Shift + left drag", "pan"},
     {"Wheel", "zoom to the cursor"},
     {"Home", "first view"},
-    {"Ctrl + drag", "stir the fluid"},
+    {"Ctrl + drag", "stir the fluid, or drag an obstacle"},
     {"Ctrl + wheel", "radius of the stirrer"},
     {"Double click", "pick a particle"},
     {"1  2  3  4", "plain, velocity, pressure, density"},
@@ -38,7 +38,8 @@ void startStir(Ui& ui) {
     ui.stirCenter = ui.frame.surfaceAt(x, y).value_or(camera.onPlane(
         ui.mouseX, ui.mouseY, float(ui.area.width), float(ui.area.height), camera.target));
     ui.stirBefore = ui.stirCenter;
-    ui.drag = Drag::Stir;
+    ui.drag = Drag::Stir;   // until it turns out that an obstacle is there
+    ui.grabWanted = true;
     ui.stale = true;
 }
 
@@ -56,6 +57,8 @@ void pressButton(Ui& ui, const SDL_MouseButtonEvent& event) {
 
 void releaseButton(Ui& ui) {
     if (ui.drag == Drag::Stir) ui.player.stir({});
+    if (ui.drag == Drag::Solid) ui.player.hold({});
+    ui.grabWanted = false;
     if (ui.drag != Drag::None) ui.stale = true;
     ui.drag = Drag::None;
 }
@@ -67,7 +70,7 @@ void dragMouse(Ui& ui, float dx, float dy) {
     if (ui.drag == Drag::Orbit) camera.orbit(-dx * 180 / height, dy * 180 / height);
     if (ui.drag == Drag::Pan) camera.pan(dx, dy, height);
     if (ui.drag == Drag::Orbit || ui.drag == Drag::Pan) ui.moveCamera(camera);
-    if (ui.drag != Drag::Stir) return;
+    if (ui.drag != Drag::Stir && ui.drag != Drag::Solid) return;
     ui.stirCenter = camera.onPlane(ui.mouseX, ui.mouseY, width, height, ui.stirCenter);
     ui.stale = true;
 }

@@ -61,7 +61,7 @@ void Player::begin(Scene s, std::unique_ptr<Simulation> simulation) {
     rateSteps_ = 0;
     stepsLeft_ = scene.compute.steps;
     lastProceed_ = rateSince_ = wallTime();
-    applyWanted_ = stepWanted_ = stirWanted_ = collected_ = false;
+    applyWanted_ = stepWanted_ = stirWanted_ = holdWanted_ = collected_ = false;
     ++generation_;
 }
 
@@ -84,7 +84,7 @@ void Player::switchBackend(Backend backend) {
     next.compute.backend = backend;
     stepper_ = std::make_unique<Stepper>(makeSimulation(next, stepper_->simulation().state()), next);
     scene.compute.backend = backend;
-    stirWanted_ = false;
+    stirWanted_ = holdWanted_ = false;
 }
 
 void Player::stepOnce() {
@@ -141,7 +141,8 @@ void Player::meetRequests() {
         if (applyWanted_) stepper_->guard().apply(scene);
     } catch (const Error& error) { halt(error.what()); }
     if (stirWanted_) stepper_->simulation().stir(stir_);
-    applyWanted_ = stirWanted_ = false;
+    if (holdWanted_) stepper_->simulation().hold(hold_);
+    applyWanted_ = stirWanted_ = holdWanted_ = false;
 }
 
 void Player::proceed(double budget) {

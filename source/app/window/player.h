@@ -38,6 +38,10 @@ public:
         stir_ = s;
         stirWanted_ = true;
     }
+    void hold(const Hold& h) {
+        hold_ = h;
+        holdWanted_ = true;
+    }
 
     // Blocks until the step at hand is done. Throws Error; then nothing has changed.
     void load(const std::string& file);
@@ -76,8 +80,9 @@ private:
     Camera initialCamera_;
     Measurement measurement_;
     History history_;
-    bool applyWanted_ = false, stirWanted_ = false, stepWanted_ = false, collected_ = false;
+    bool applyWanted_ = false, stirWanted_ = false, holdWanted_ = false, stepWanted_ = false, collected_ = false;
     Stir stir_;
+    Hold hold_;
     int64_t stepsLeft_ = 0;                // until the run pauses by itself; 0 = never
     double lag_ = 0, lastProceed_ = 0;     // s
     double rateSince_ = 0, rateTime_ = 0;  // wall and simulated s at the last update of the rates

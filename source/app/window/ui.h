@@ -18,7 +18,7 @@ struct Area {
     int x = 0, y = 0, width = 1, height = 1;
 };
 
-enum class Drag { None, Orbit, Pan, Stir };
+enum class Drag { None, Orbit, Pan, Stir, Solid };
 
 // Words over the picture that go away by themselves.
 struct Message {
@@ -48,6 +48,8 @@ struct Ui {
     float mouseX = 0, mouseY = 0;  // px within the area
     Vec3 stirCenter, stirBefore;   // m, relative to the domain's lower corner
     float stirRadius = 0.1f;       // m
+    bool grabWanted = false;       // if there is an obstacle at stirCenter
+    Hold hold;                     // of an obstacle that is dragged, its target seen from stirCenter
 
     std::optional<std::array<float, 2>> pickAt;  // px within the area
     std::optional<Particle> picked;
@@ -76,6 +78,7 @@ struct Ui {
     void takeScreenshot();
     void saveCheckpoint();
     void pick();           // the simulation must be at hand
+    void grab();           // likewise
     void refreshPicked();  // likewise
     std::vector<Ring> rings() const;
 };

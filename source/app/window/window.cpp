@@ -182,7 +182,7 @@ private:
     }
 
     void advance() {
-        noteStir();
+        noteDrag();
         bool moved = false;
         if (!ui_.player.collect(moved)) return;
         if (generation_ != ui_.player.generation()) startOver();
@@ -192,6 +192,7 @@ private:
         try {
             if (ui_.rewrite || (moved_ && timeForPicture())) updateVertices();
             if (ui_.pickAt) ui_.pick();
+            if (ui_.grabWanted) ui_.grab();
         } catch (const Error& error) {   // a GPU was lost
             ui_.player.halt(error.what());
             ui_.pickAt.reset();
@@ -226,11 +227,14 @@ private:
         SDL_SetWindowTitle(screen_.window, (scene.window.title + " - " + scene.name).c_str());
     }
 
-    void noteStir() {
+    void noteDrag() {
         const double now = uiTime(), passed = std::max(now - stirTime_, 1e-3);
-        if (ui_.drag != Drag::Stir || ui_.player.busy()) return;
+        if (ui_.player.busy()) return;
+        const Vec3 origin = ui_.player.scene.domain.min;
+        if (ui_.drag == Drag::Solid) ui_.player.hold({ui_.hold.solid, ui_.stirCenter + origin + ui_.hold.target});
+        if (ui_.drag != Drag::Stir) return;
         const Vec3 velocity = float(1 / passed) * (ui_.stirCenter - ui_.stirBefore);
-        ui_.player.stir({ui_.stirCenter + ui_.player.scene.domain.min, ui_.stirRadius,
+        ui_.player.stir({ui_.stirCenter + origin, ui_.stirRadius,
                          passed < 0.5 ? velocity : Vec3{}});
         ui_.stirBefore = ui_.stirCenter;
         stirTime_ = now;

@@ -10,7 +10,10 @@
 namespace spindrift {
 namespace {
 
-constexpr Integrator All[] = {Integrator::SymplecticEuler, Integrator::VelocityVerlet, Integrator::PredictorCorrector};
+// From bad to good; what splits is for carried densities that are not shifted.
+constexpr Integrator All[] = {Integrator::Split, Integrator::SymplecticEuler, Integrator::VelocityVerlet, Integrator::PredictorCorrector};
+bool fits(Formulation f, Integrator i) { return i != Integrator::Split || f == Formulation::DeltaSph; }
+bool isFirstOrder(Integrator i) { return i == Integrator::Split || i == Integrator::SymplecticEuler; }
 
 void fixSteps(Scene& s, Integrator integrator, double step) {
     s.time.integrator = integrator;
@@ -41,11 +44,12 @@ double orbitError(Formulation formulation, Integrator integrator, double step) {
 TEST(Integrators, OrbitsHaveTheirOrder) {
     for (Formulation f : {Formulation::Wcsph, Formulation::DeltaSph})
         for (Integrator i : All) {
+            if (!fits(f, i)) continue;
             const double coarse = orbitError(f, i, 1.0 / 64), fine = orbitError(f, i, 1.0 / 128);
             const double order = std::log2(coarse / fine);
             std::printf("orbit, %s: %.2e, %.2e, order %.2f\n", enumNames(i)[size_t(i)], coarse, fine, order);
-            EXPECT_NEAR(order, i == Integrator::SymplecticEuler ? 1 : 2, 0.1) << int(i);
-            EXPECT_LT(fine, i == Integrator::SymplecticEuler ? 5e-3 : 5e-5) << int(i);
+            EXPECT_NEAR(order, isFirstOrder(i) ? 1 : 2, 0.1) << int(i);
+            EXPECT_LT(fine, isFirstOrder(i) ? 5e-3 : 5e-5) << int(i);
         }
 }
 
@@ -75,13 +79,14 @@ TEST(Integrators, FlowsHaveTheirOrder) {
         const std::vector<Particle> exact = vortices(f, Integrator::PredictorCorrector, Step / 8);
         double before = 1e9;
         for (Integrator i : All) {
+            if (!fits(f, i)) continue;
             const double coarse = distance(vortices(f, i, Step), exact), fine = distance(vortices(f, i, Step / 2), exact);
             const double order = std::log2(coarse / fine);
             std::printf("%s, %s: %.2e, %.2e, order %.2f\n", enumNames(f)[size_t(f)], enumNames(i)[size_t(i)], coarse, fine, order);
-            const bool second = i != Integrator::SymplecticEuler && (f == Formulation::Wcsph || i == Integrator::PredictorCorrector);
+            const bool second = !isFirstOrder(i) && (f == Formulation::Wcsph || i == Integrator::PredictorCorrector);
             // Where particles are shifted the part of the velocity that they are carried through is of first order, and small.
             EXPECT_GT(order, second && f != Formulation::TransportVelocity ? 1.9 : 0.9);
-            EXPECT_LT(fine, before * (i == Integrator::VelocityVerlet ? 0.7 : 0.5)) << "a better integrator is no better";
+            EXPECT_LT(fine, before * (isFirstOrder(i) ? 1.2 : i == Integrator::VelocityVerlet ? 0.7 : 0.5)) << "a better integrator is no better";
             before = fine;
         }
     }

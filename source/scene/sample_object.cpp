@@ -1,0 +1,163 @@
+#include "scene/sample_object.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+namespace spindrift {
+namespace {
+
+// Nodes of a lattice along three directions of an object's own, the first of which may be closed to a ring. A direction with one node has no extent.
+struct Nodes {
+    int64_t n[3] = {1, 1, 1};
+    bool ring = false;
+    int64_t cells(int k) const { return ring && k == 0 ? n[0] : std::max<int64_t>(n[k] - 1, 1); }
+    bool extends(int k) const { return n[k] > 1; }
+    int index(int64_t i, int64_t j, int64_t k) const { return int(((k % n[2]) * n[1] + j % n[1]) * n[0] + (ring ? i % n[0] : i)); }
+    bool atSurface(int64_t i, int64_t j, int64_t k) const {
+        const int64_t at[3] = {i, j, k};
+        int extents = 0;
+        bool end = false;
+        for (int d = 0; d < 3; ++d) {
+            extents += extends(d);
+            if (extends(d) && !(ring && d == 0)) end |= at[d] == 0 || at[d] == n[d] - 1;
+        }
+        return extents < 3 || end;
+    }
+};
+
+int64_t nodesAlong(double extent, double spacing) { return std::max<int64_t>(2, int64_t(std::llround(extent / spacing)) + 1); }
+
+Nodes nodesOf(const Scene& scene, const Object& o) {
+    const double a = spacingOf(scene, o);
+    const bool flat = scene.simulation.dimensions == 2;
+    // A wall of one layer, or of as many as it is thick.
+    const int64_t layers = o.thickness < 0.75 * a ? 1 : nodesAlong(o.thickness, a);
+    Nodes nodes;
+    if (o.shape == ObjectShape::Tube) {
+        nodes.ring = true;
+        nodes.n[0] = std::max<int64_t>(6, std::llround(2 * std::numbers::pi * o.radius / a));
+        nodes.n[1] = flat ? 1 : nodesAlong(o.height, a);
+        nodes.n[2] = layers;
+        return nodes;
+    }
+    for (int k = 0; k < (flat ? 2 : 3); ++k) {
+        const double extent = double(o.max[k]) - o.min[k];
+        nodes.n[k] = extent > 0 ? nodesAlong(extent, a) : layers;
+    }
+    return nodes;
+}
+
+// Where node (i, j, k) lies, m, world coordinates.
+Vec3d placeOf(const Scene& scene, const Object& o, const Nodes& nodes, int64_t i, int64_t j, int64_t k) {
+    const double middle = 0.5 * (double(scene.domain.min.z) + scene.domain.max.z);
+    auto share = [](int64_t at, int64_t n) { return n > 1 ? double(at) / double(n - 1) - 0.5 : 0.0; };
+    Vec3d x;
+    if (o.shape == ObjectShape::Tube) {
+        const bool flat = scene.simulation.dimensions == 2;
+        const int axis = flat ? 2 : int(o.axis);
+        const double angle = 2 * std::numbers::pi * double(i) / double(nodes.n[0]), r = o.radius + o.thickness * share(k, nodes.n[2]);
+        x = toDouble(o.center);
+        x[(axis + 1) % 3] += r * std::cos(angle), x[(axis + 2) % 3] += r * std::sin(angle);
+        x[axis] += flat ? middle - x[axis] : o.height * share(j, nodes.n[1]);
+        return x;
+    }
+    const int64_t at[3] = {i, j, k};
+    for (int d = 0; d < 3; ++d) {
+        const double extent = double(o.max[d]) - o.min[d];
+        x[d] = 0.5 * (double(o.min[d]) + o.max[d]) + (extent > 0 ? extent : double(o.thickness)) * share(at[d], nodes.n[d]);
+    }
+    if (scene.simulation.dimensions == 2) x.z = middle;
+    return x;
+}
+
+// Adds up the springs of cells and the mass at their corners.
+struct Cells {
+    const Scene& scene;
+    const Object& object;
+    const Nodes& nodes;
+    ObjectSample& out;
+    int first;
+    std::map<std::pair<int, int>, double> springs{};
+
+    Vec3d at(int node) const { return toDouble(out.positions[size_t(first + node)]); }
+    void join(int a, int b, double stiffness) { springs[{std::min(a, b), std::max(a, b)}] += stiffness; }
+
+    void add(int64_t i, int64_t j, int64_t k) {
+        std::vector<int> directions;
+        for (int d = 0; d < 3; ++d)
+            if (nodes.extends(d)) directions.push_back(d);
+        const int extents = int(directions.size()), corners = 1 << extents;
+        auto corner = [&](int bits) {
+            int64_t c[3] = {i, j, k};
+            for (int e = 0; e < extents; ++e) c[directions[size_t(e)]] += bits >> e & 1;
+            return nodes.index(c[0], c[1], c[2]);
+        };
+        double volume = 1;
+        for (int e = 0; e < extents; ++e) volume *= length(at(corner(1 << e)) - at(corner(0)));
+        // What is not a direction of the lattice is as thick as the wall, and in two dimensions as the slab.
+        const double slab = scene.simulation.spacing, rest = scene.simulation.dimensions == 3 ? object.thickness : extents == 2 ? slab : object.thickness * slab;
+        const double full = extents == 3 ? volume : volume * rest, a = std::pow(volume, 1.0 / extents);
+        for (int c = 0; c < corners; ++c) out.masses[size_t(first + corner(c))] += float(object.density * full / corners);
+        const double E = object.youngsModulus;
+        const double edge = extents == 3 ? 0.1 * E * a : extents == 2 ? 0.375 * E * rest : E * rest / a;
+        const double diagonal = extents == 3 ? 0.2 * E * a : 0.375 * E * rest;
+        for (int c = 0; c < corners; ++c)
+            for (int d = c + 1; d < corners; ++d) {
+                const int apart = __builtin_popcount(unsigned(c ^ d));
+                if (apart <= 2) join(corner(c), corner(d), apart == 1 ? edge : diagonal);
+            }
+    }
+};
+
+void sampleObject(const Scene& scene, int number, ObjectSample& out) {
+    const Object& o = scene.objects[size_t(number)];
+    const Nodes nodes = nodesOf(scene, o);
+    const Vec3d origin = toDouble(scene.domain.min);
+    const int first = int(out.size());
+    for (int64_t k = 0; k < nodes.n[2]; ++k)
+        for (int64_t j = 0; j < nodes.n[1]; ++j)
+            for (int64_t i = 0; i < nodes.n[0]; ++i) {
+                const Vec3d x = placeOf(scene, o, nodes, i, j, k);
+                const auto holds = [&](const Grip& g) {
+                    for (int d = 0; d < scene.simulation.dimensions; ++d)
+                        if (x[d] < double(g.min[d]) || x[d] > double(g.max[d])) return false;
+                    return true;
+                };
+                const auto grip = std::find_if(scene.grips.begin(), scene.grips.end(), holds);
+                out.positions.push_back(toFloat(x - origin));
+                out.grips.push_back(grip == scene.grips.end() ? -1 : int(grip - scene.grips.begin()));
+                out.atSurface.push_back(nodes.atSurface(i, j, k));
+            }
+    out.masses.resize(out.size());
+    out.radii.resize(out.size(), 0.5f * spacingOf(scene, o));
+    out.objects.resize(out.size(), number);
+    Cells cells{scene, o, nodes, out, first};
+    for (int64_t k = 0; k < nodes.cells(2); ++k)
+        for (int64_t j = 0; j < nodes.cells(1); ++j)
+            for (int64_t i = 0; i < nodes.cells(0); ++i) cells.add(i, j, k);
+    for (const auto& [pair, stiffness] : cells.springs)
+        out.bonds.push_back({first + pair.first, first + pair.second, float(length(cells.at(pair.first) - cells.at(pair.second))), float(stiffness)});
+}
+
+}  // namespace
+
+float spacingOf(const Scene& scene, const Object& o) { return o.spacing > 0 ? o.spacing : scene.simulation.spacing; }
+
+ObjectSample sampleObjects(const Scene& scene) {
+    ObjectSample out;
+    for (size_t i = 0; i < scene.objects.size(); ++i) sampleObject(scene, int(i), out);
+    return out;
+}
+
+double countObjectParticles(const Scene& scene) {
+    double all = 0;
+    for (const Object& o : scene.objects) {
+        const Nodes nodes = nodesOf(scene, o);
+        all += double(nodes.n[0]) * double(nodes.n[1]) * double(nodes.n[2]);
+    }
+    return all;
+}
+
+}  // namespace spindrift

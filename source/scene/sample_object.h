@@ -1,0 +1,33 @@
+#pragma once
+// Elastic objects -> particles and the bonds between them.
+#include "scene/scene.h"
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace spindrift {
+
+// Of particles `a` < `b`: m at rest, N/m.
+struct Bond { int a, b; float length, stiffness; };
+
+// All objects of a scene, one after the other: m from domain.min, kg, m; the object that each particle is of, the first grip that holds it or -1, and
+// whether it is at the surface. Lattices of springs along the edges and the diagonals of faces of their cells are isotropic, with Poisson's ratio 1/4 in three
+// dimensions and 1/3 in a layer (Hrennikoff 1941); bonds that several cells share are as stiff as all their shares.
+struct ObjectSample {
+    std::vector<Vec3> positions;
+    std::vector<float> masses, radii;
+    std::vector<int> objects, grips;
+    std::vector<uint8_t> atSurface;
+    std::vector<Bond> bonds;
+    size_t size() const { return positions.size(); }
+};
+ObjectSample sampleObjects(const Scene&);
+
+// m between an object's particles, as asked for.
+float spacingOf(const Scene&, const Object&);
+
+// How many particles sampleObjects makes, without making any.
+double countObjectParticles(const Scene&);
+
+}  // namespace spindrift

@@ -1,0 +1,214 @@
+// What floats: where solids touch each other and the domain's box, and how they move.
+#pragma once
+
+#include "scene/mass.h"
+#include "sim/solids.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace spindrift::LANES {
+
+// What moves a solid on a step; in two dimensions of a slab one spacing thick. N and N m about its centre of mass.
+struct Wrench { Vec3d force, torque; };
+
+// Where a solid touches, it is made of balls: its outermost boundary particles, as large as they are deep in it. They press like damped springs and rub
+// (Cundall & Strack 1979); a face full of them is as stiff as the step can bear, and overlaps by less than a thousandth of a spacing under its weight.
+struct Touch { Vec3d force, torque; HD_OUT void add(const Touch& o) { force = force + o.force, torque = torque + o.torque; } };
+
+// Sums what `solid` feels where its balls touch walls and other solids, and where other solids' balls touch it.
+struct SumTouches {
+    View v;
+    WallsAtHome home;
+    const RigidBody* bodies;
+    int solid;
+    struct Ball { Vector<real> position, velocity; real radius; };
+
+    HD void addTo(Touch& sum, int i) const {
+        const int owner = v.walls.id[i] < 0 ? -1 : home.solidOf(v.walls.id[i]);
+        if (owner < 0) return;
+        const SolidState& own = v.solids[owner];
+        Vector<real> normal{0, 0, 0};
+        const real depth = -nearest(own, load(home.position, v.walls.id[i] - home.firstId) - own.home, normal);
+        if (depth > bodies[owner].deepestBall) return;
+        const Ball ball{load(v.walls.position, i), load(v.walls.ownVelocity, i), depth};
+        Vector<real> force{0, 0, 0};
+        if (owner != solid) force = real(-1) * pressOn(ball, owner, solid);
+        else {
+            touchBox(ball, force);
+            for (int other = 0; other < v.solidCount; ++other)
+                if (other != solid) force = force + pressOn(ball, solid, other);
+        }
+        const Vec3d f{force.x, force.y, force.z};
+        const Vector<real> arm = imageOf(v.c, ball.position - v.solids[solid].centreOfMass);
+        sum.add({f, cross(Vec3d{arm.x, arm.y, arm.z}, f)});
+    }
+    HD void touchBox(const Ball& b, Vector<real>& force) const {
+        const RigidBody& body = bodies[solid];
+        auto side = [&](real overlap, Vector<real> n) { force = force + press(body, overlap, n, b.velocity - wallVelocity(v.c, b.position)); };
+        const Constants& c = v.c;
+        if (c.period.x <= 0) side(b.radius - (b.position.x - c.low.x), {1, 0, 0}), side(b.radius - (c.high.x - b.position.x), {-1, 0, 0});
+        if (c.period.y <= 0) side(b.radius - (b.position.y - c.low.y), {0, 1, 0}), side(b.radius - (c.high.y - b.position.y), {0, -1, 0});
+        if (c.period.z <= 0 && c.dimensions == 3)
+            side(b.radius - (b.position.z - c.low.z), {0, 0, 1}), side(b.radius - (c.high.z - b.position.z), {0, 0, -1});
+    }
+    HD Vector<real> pressOn(const Ball& b, int owner, int other) const {
+        const SolidState& s = v.solids[other];
+        const Vector<real> arm = imageOf(v.c, b.position - s.middle);
+        if (dot(arm, arm) > (s.reach + b.radius) * (s.reach + b.radius)) return {0, 0, 0};
+        Vector<real> n{0, 0, 0};
+        const real distance = nearest(s, Vector<real>{dot(arm, s.axis[0]), dot(arm, s.axis[1]), dot(arm, s.axis[2])}, n);
+        const RigidBody &mine = bodies[owner], &theirs = bodies[other];
+        const RigidBody& softer = mine.stiffness < theirs.stiffness ? mine : theirs;
+        RigidBody both = softer;
+        both.friction = min(mine.friction, theirs.friction);
+        return press(both, b.radius - distance, turned(s, n), b.velocity - s.velocity - cross(s.spin, arm));
+    }
+    HD static Vector<real> press(const RigidBody& b, real overlap, Vector<real> n, Vector<real> velocity) {
+        if (overlap <= 0) return {0, 0, 0};
+        const real apart = dot(velocity, n), normal = max(b.stiffness * overlap - b.damping * apart, real(0));
+        const Vector<real> along = velocity - apart * n;
+        const real slip = squareRoot(dot(along, along));
+        return addScaled(normal * n, -min(b.damping, b.friction * normal / max(slip, real(1e-12))), along);
+    }
+};
+
+// v += F / m dt, x += v dt; the same of angular momentum and turn. A solid that the mouse holds goes where it is wanted: one that floats by a damped
+// spring, another one by itself, no faster than a tenth of the speed of sound.
+struct MoveFloating {
+    using Index = int;
+    View v;
+    const RigidBody* bodies;
+    SolidMotion* motions;
+    const SolidLoad* loads;
+    const Touch* touches;
+    double fluidMass;            // kg, of a particle
+    Hold hold;                   // target relative to the domain's lower corner
+    double kick, drift;          // shares of the step
+    HD void operator()(int s) const {
+        bodies[s].mass > 0 ? moveFloating(s) : drag(s);
+    }
+    HD void moveFloating(int s) const {
+        const RigidBody& body = bodies[s];
+        SolidMotion& m = motions[s];
+        const double dt = v.state->dt;
+        Wrench w = wrenchOn(s);
+        if (hold.solid == s) pull(w, body, m, v.solids[s]);
+        if (v.c.dimensions == 2) w.force.z = w.torque.x = w.torque.y = 0;
+        m.velocity = m.velocity + (kick * dt / body.mass) * w.force;
+        m.angularMomentum = m.angularMomentum + (kick * dt) * w.torque;
+        m.place = wrapped(m.place + (drift * dt) * m.velocity);
+        turnBy(m.turn, (drift * dt) * spinOf(body, m));
+    }
+    HD Wrench wrenchOn(int s) const {
+        const SolidLoad& load = loads[s];
+        const SolidState& state = v.solids[s];
+        const Vector<real> pull = bodyForce(v.c, gravityNow(v), state.centreOfMass), out = state.middle - state.centreOfMass;
+        auto sum = [&](int k) { return fluidMass * (load.pressure[k] + load.other[k]); };
+        const Vec3d fluid{sum(0), sum(1), sum(2)}, torque{load.torque[0], load.torque[1], load.torque[2]};
+        return {fluid + touches[s].force + bodies[s].mass * Vec3d{pull.x, pull.y, pull.z},
+                fluidMass * torque + cross(Vec3d{out.x, out.y, out.z}, fluid) + touches[s].torque};
+    }
+    HD void pull(Wrench& w, const RigidBody& body, const SolidMotion& m, const SolidState& s) const {
+        const double rate = 15, most = 60;   // 1/s, m/s^2
+        const Vec3d target{hold.target.x, hold.target.y, hold.target.z};
+        const Vec3d wanted = (rate * rate) * (target - Vec3d{s.middle.x, s.middle.y, s.middle.z}) - (2 * rate) * m.velocity;
+        const double size = sqrt(dot(wanted, wanted));
+        w.force = w.force + (body.mass * (size > most ? most / size : 1.0)) * wanted;
+        w.torque = w.torque - rate * m.angularMomentum;
+    }
+    HD void drag(int s) const {
+        const double time = 0.05, fastest = 0.1 * double(v.c.soundSpeed), dt = v.state->dt;   // s, m/s
+        SolidMotion& m = motions[s];
+        m.velocity = {0, 0, 0};
+        if (hold.solid != s) return;
+        const Vector<real> at = v.solids[s].middle;
+        const Vec3d wanted = (1 / (dt > time ? dt : time)) * (Vec3d{hold.target.x, hold.target.y, hold.target.z} - Vec3d{at.x, at.y, at.z});
+        const double speed = sqrt(dot(wanted, wanted));
+        m.velocity = (speed > fastest ? fastest / speed : 1.0) * wanted;
+        if (v.c.dimensions == 2) m.velocity.z = 0;
+        m.place = m.place + (drift * dt) * m.velocity;
+    }
+    HD Vec3d wrapped(Vec3d x) const {
+        const Constants& c = v.c;
+        return {x.x - c.period.x * floor(x.x * c.inversePeriod.x), x.y - c.period.y * floor(x.y * c.inversePeriod.y),
+                x.z - c.period.z * floor(x.z * c.inversePeriod.z)};
+    }
+};
+
+// Owns what is known of solids as bodies with a mass: only where one floats or has been dragged.
+template <class Device> class Floating {
+public:
+    explicit Floating(Device& device) : device_(device) {}
+
+    // `motions` of a run that goes on; none: solids are at their places in the scene. `step` is the longest that the run takes, s.
+    void place(const Scene& scene, double step, std::vector<SolidMotion> motions) {
+        std::vector<RigidBody> bodies;
+        for (const Solid& solid : scene.solids) bodies.push_back(bodyOf(scene, solid, step));
+        for (size_t s = motions.size(); s < bodies.size(); ++s)
+            motions.push_back(scene.solids[s].floats() ? motionAtHome(scene, scene.solids[s], bodies[s]) : SolidMotion{});
+        CHECK(motions.size() == bodies.size());
+        loads_.resize(bodies.size()), touches_.resize(bodies.size());
+        fill(bodies_, bodies), fill(motions_, motions);
+    }
+    std::vector<SolidMotion> download() {
+        std::vector<SolidMotion> motions(motions_.size());
+        device_.download(motions.data(), motions_.data(), motions.size());
+        return motions;
+    }
+    const RigidBody* bodies() const { return bodies_.data(); }
+    const SolidMotion* motions() const { return motions_.data(); }
+
+    // `sum(solid)` is the reduction of what fluid does to it.
+    template <class Sum> void findForces(const Scene& scene, const View& v, const WallsAtHome& home, const Sum& sum) {
+        for (int s = 0; s < v.solidCount; ++s) {
+            if (!scene.solids[size_t(s)].floats()) continue;
+            device_.reduce(v.walls.slots, sum(s), loads_.data() + s);
+            device_.reduce(v.walls.slots, SumTouches{v, home, bodies_.data(), s}, touches_.data() + s);
+        }
+    }
+    void move(const View& v, double fluidMass, const Hold& hold, double kick, double drift) {
+        device_.forEach(v.solidCount, MoveFloating{v, bodies_.data(), motions_.data(), loads_.data(), touches_.data(), fluidMass, hold, kick, drift});
+    }
+
+private:
+    template <class T> void fill(Buffer<T, Device>& buffer, const std::vector<T>& host) {
+        buffer.resize(host.size());
+        device_.upload(buffer.data(), host.data(), host.size());
+    }
+    static RigidBody bodyOf(const Scene& scene, const Solid& solid, double step) {
+        const real without = real(1e30);
+        RigidBody body{0, {}, {}, without, without, solid.friction, real(0.75) * scene.simulation.spacing};
+        if (!solid.floats()) return body;
+        const Mass mass = massOf(scene, solid);
+        const Convex shape = convexOf(solid, scene.simulation.dimensions);
+        double outermost = 0;
+        for (const Vec3& p : sampleSolid(scene, solid).positions)
+            outermost += -shape.nearest(toDouble(p + scene.domain.min) - shape.middle).distance <= double(body.deepestBall);
+        const double face = std::max(1.0, outermost / (2 * scene.simulation.dimensions)), rate = 0.2 / step;
+        const double lost = std::log(std::max(double(scene.walls.restitution), 1e-6)), ratio = -lost / std::hypot(lost, std::numbers::pi);
+        body.mass = mass.mass, body.centre = mass.centre;
+        body.inverseInertia = {1 / mass.inertia.x, 1 / mass.inertia.y, 1 / mass.inertia.z};
+        body.stiffness = real(body.mass * rate * rate / face);
+        body.damping = real(2 * ratio * body.mass * rate / face);
+        return body;
+    }
+    static SolidMotion motionAtHome(const Scene& scene, const Solid& solid, const RigidBody& body) {
+        SolidMotion m;
+        const SolidState home = solidAtHome(scene, solid);
+        m.place = Vec3d{home.middle.x, home.middle.y, home.middle.z} + body.centre;
+        m.velocity = toDouble(solid.velocity);
+        const int axis = int(solid.spinAxis);
+        m.angularMomentum[axis] = double(solid.spin) * std::numbers::pi / 180 / body.inverseInertia[axis];
+        return m;
+    }
+
+    Device& device_;
+    Buffer<RigidBody, Device> bodies_{device_};
+    Buffer<SolidMotion, Device> motions_{device_};
+    Buffer<SolidLoad, Device> loads_{device_};
+    Buffer<Touch, Device> touches_{device_};
+};
+
+}  // namespace spindrift::LANES

@@ -1,0 +1,447 @@
+// Elastic objects: particles with bonds between them.
+#pragma once
+
+#include "scene/motion.h"
+#include "scene/sample_object.h"
+#include "sim/contact.h"
+#include "sim/object_driver.h"
+#include "sim/object_state.h"
+#include "sim/particle_set.h"
+#include "sim/search.h"
+#include "sim/solids.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace spindrift::LANES {
+
+// One end's view of a bond; m, N/m. Broken: without stiffness.
+struct BondEnd { int other; real length, stiffness; };
+// What all particles of an object share.
+struct Material { real damping, breakingStrain; };
+// A part of an object that is held; see MotionKey.
+struct GripKeys { int first, end; };
+
+// Particles of all objects in the order of their ids, which are 0, 1, ...
+struct ObjectParticles {
+    int count;
+    VectorField position, velocity, acceleration;   // m, m/s, m/s^2
+    VectorField home;                               // m, at the start
+    ScalarField mass, radius;                       // kg, m
+    ScalarField torn;                               // 1: a bond of it is broken
+    const int *object, *grip, *firstBond;           // grip -1: nobody holds it; bonds [firstBond[i], firstBond[i + 1])
+    BondEnd* bonds;
+    int* slot;                                      // where the surface has it, or -1
+};
+
+// Positions for the next sort.
+struct FetchPlaces {
+    using Index = int;
+    ObjectParticles o;
+    Particles sorted;
+    HD void operator()(int i) const {
+        if (sorted.id[i] >= 0) store(sorted.position, i, load(o.position, sorted.id[i]));
+    }
+};
+
+// The surface as it is now, in the order of the last sort.
+struct PlaceSurface {
+    using Index = int;
+    ObjectParticles o;
+    ObjectSurface s;
+    HD void operator()(int i) const {
+        const int id = s.id[i];
+        if (id < 0) return storeEmpty(i);
+        o.slot[id] = i;
+        store(s.position, i, load(o.position, id)), store(s.velocity, i, load(o.velocity, id)), store(s.home, i, load(o.home, id));
+        store(s.radius, i, load(o.radius, id)), store(s.torn, i, load(o.torn, id)), store(s.object, i, real(o.object[id]));
+    }
+    // Meets nobody, but lanes compute with it.
+    HD void storeEmpty(int i) const {
+        const Vector<real> zero{0, 0, 0};
+        store(s.velocity, i, zero), store(s.home, i, zero);
+        store(s.radius, i, real(1e-6)), store(s.torn, i, real(0)), store(s.object, i, real(0));
+    }
+};
+
+// Forces of bonds, damped springs, and of contacts; who is stretched too far breaks, and who is cut. Both ends of a bond see the same.
+struct StretchBonds {
+    using Index = int;
+    View v;
+    ObjectParticles o;
+    VectorField contact;
+    const Material* materials;
+    const Cut* cuts;
+    int cutCount;
+    HD void operator()(int i) const {
+        const Vector<real> x = load(o.position, i), u = load(o.velocity, i);
+        const Material material = materials[o.object[i]];
+        const real mass = load(o.mass, i);
+        Vector<real> force{0, 0, 0};
+        if (o.slot[i] >= 0) force = load(contact, o.slot[i]);
+        for (int b = o.firstBond[i]; b < o.firstBond[i + 1]; ++b) {
+            BondEnd& bond = o.bonds[b];
+            if (bond.stiffness <= 0) continue;
+            const Vector<real> other = load(o.position, bond.other), r = imageOf(v.c, other - x);
+            const real length = squareRoot(dot(r, r)), strain = length / bond.length - 1;
+            if ((material.breakingStrain > 0 && strain > material.breakingStrain) || isCut(real(0.5) * (x + other))) {
+                bond.stiffness = 0;
+                store(o.torn, i, real(1));
+                continue;
+            }
+            const Vector<real> n = (1 / max(length, real(1e-12))) * r;
+            const real otherMass = load(o.mass, bond.other);
+            const real damping = 2 * material.damping * squareRoot(bond.stiffness * mass * otherMass / (mass + otherMass));
+            const real pull = bond.stiffness * (length - bond.length) + damping * dot(load(o.velocity, bond.other) - u, n);
+            force = addScaled(force, pull, n);
+        }
+        store(o.acceleration, i, addScaled(bodyForce(v.c, gravityNow(v), x), 1 / mass, force));
+    }
+    // Since the last step began.
+    HD bool isCut(Vector<real> middle) const {
+        for (int k = 0; k < cutCount; ++k) {
+            const Cut& cut = cuts[k];
+            const bool now = v.state->time - v.state->dt <= cut.time && cut.time < v.state->time + 1e-9;
+            if (now && middle.x >= cut.min.x && middle.x <= cut.max.x && middle.y >= cut.min.y && middle.y <= cut.max.y && middle.z >= cut.min.z &&
+                middle.z <= cut.max.z)
+                return true;
+        }
+        return false;
+    }
+};
+
+// v += a dt, x += v dt; who is held goes where its grip is. The box and solids keep them inside and out.
+struct MoveObjects {
+    using Index = int;
+    View v;
+    ObjectParticles o;
+    const GripKeys* grips;
+    const MotionKey* keys;
+    HD void operator()(int i) const {
+        if (o.grip[i] >= 0) return follow(i, grips[o.grip[i]]);
+        const real dt = real(v.state->dt), radius = load(o.radius, i);
+        Vector<real> u = addScaled(load(o.velocity, i), dt, load(o.acceleration, i));
+        Vector<real> x = addScaled(load(o.position, i), dt, u);
+        const Constants& c = v.c;
+        c.period.x > 0 ? wrap(x.x, c.period.x) : stop(x.x, u.x, c.low.x + radius, c.high.x - radius);
+        c.period.y > 0 ? wrap(x.y, c.period.y) : stop(x.y, u.y, c.low.y + radius, c.high.y - radius);
+        if (c.dimensions == 3) c.period.z > 0 ? wrap(x.z, c.period.z) : stop(x.z, u.z, c.low.z + radius, c.high.z - radius);
+        else u.z = 0, x.z = load(o.position, i).z;
+        for (int s = 0; s < v.solidCount; ++s) leave(v.solids[s], radius, x, u);
+        store(o.velocity, i, u), store(o.position, i, x);
+    }
+    HD void follow(int i, GripKeys g) const {
+        const KeyedMotion m = motionAt(keys, g.first, g.end, v.state->time);
+        const Vector<real> home = load(o.home, i);
+        store(o.velocity, i, Vector<real>{real(m.velocity.x), real(m.velocity.y), real(m.velocity.z)});
+        store(o.position, i, Vector<real>{home.x + real(m.offset.x), home.y + real(m.offset.y), home.z + real(m.offset.z)});
+    }
+    HD static void wrap(real& x, real period) { x -= period * roundDown(x / period); }
+    HD static void stop(real& x, real& u, real low, real high) {
+        if (x < low) x = low, u = max(u, real(0));
+        if (x > high) x = high, u = min(u, real(0));
+    }
+    // Stays a radius away from a solid, and loses what speed it has towards it.
+    HD void leave(const SolidState& s, real radius, Vector<real>& x, Vector<real>& u) const {
+        const Vector<real> arm = imageOf(v.c, x - s.middle);
+        if (dot(arm, arm) > (s.reach + radius) * (s.reach + radius)) return;
+        Vector<real> n{0, 0, 0};
+        const real depth = radius - nearest(s, Vector<real>{dot(arm, s.axis[0]), dot(arm, s.axis[1]), dot(arm, s.axis[2])}, n);
+        if (depth <= 0) return;
+        n = turned(s, n);
+        const real towards = min(dot(u - s.velocity - cross(s.spin, arm), n), real(0));
+        x = addScaled(x, depth, n);
+        u = subtractScaled(u, towards, n);
+    }
+};
+
+// Particles whose engine is somebody else's: on their way to where that wants them at `arrival`, s, and what they feel until then, N s.
+struct FollowDriver {
+    using Index = int;
+    const StepState* state;
+    ObjectParticles o;
+    VectorField contact, target, impulse;
+    double arrival;
+    HD void operator()(int i) const {
+        const double left = arrival - (state->time - state->dt);   // the clock is at the step's end
+        const real share = left > state->dt ? real(state->dt / left) : real(1);
+        const Vector<real> x = load(o.position, i);
+        store(o.position, i, addScaled(x, share, load(target, i) - x));
+        if (o.slot[i] >= 0) store(impulse, i, addScaled(load(impulse, i), real(state->dt), load(contact, o.slot[i])));
+    }
+};
+
+// The fastest of them at the end of the next step, m/s squared.
+struct FindObjectSpeed {
+    ObjectParticles o;
+    const StepState* state;
+    HD void addTo(Extremes& e, int i) const {
+        const Vector<real> u = load(o.velocity, i), a = load(o.acceleration, i);
+        const real speed = squareRoot(dot(u, u)) + (o.grip[i] < 0 ? real(state->dt) * squareRoot(dot(a, a)) : real(0));
+        e.add({float(speed * speed), 0});
+    }
+};
+struct TakeFaster {
+    using Index = int;
+    Extremes *fluid, *objects;
+    HD void operator()(int) const { fluid->add(*objects); }
+};
+
+// After fluid and boundary particles: one value for all, by which they are told from those, and their size in the fluid's.
+struct WriteObjectVertices {
+    using Index = int;
+    ObjectParticles o;
+    Vertex* out;
+    real fluidRadius;
+    HD void operator()(int i) const {
+        const Vector<real> x = load(o.position, i);
+        out[i] = {float(x.x), float(x.y), float(x.z), 2 + float(load(o.radius, i) / fluidRadius)};
+    }
+};
+
+// Owns the objects and finds who touches whom.
+template <class Device> class Objects {
+public:
+    explicit Objects(Device& device) : device_(device) {}
+
+    int count() const { return int(sample_.size()); }
+
+    // Objects at their places in the scene, for good.
+    void place(const Scene& scene) {
+        sample_ = sampleObjects(scene);
+        if (count() == 0) return;
+        fillVectors(home_, sample_.positions);
+        fill(mass_, std::vector<real>(sample_.masses.begin(), sample_.masses.end()));
+        fill(radius_, std::vector<real>(sample_.radii.begin(), sample_.radii.end()));
+        fill(object_, sample_.objects), fill(grip_, sample_.grips);
+        std::vector<Material> materials;
+        for (const Object& o : scene.objects) materials.push_back({o.damping, o.breakingStrain});
+        fill(materials_, materials), fill(cuts_, scene.cuts);
+        std::vector<GripKeys> grips;
+        std::vector<MotionKey> keys;
+        for (const Grip& g : scene.grips) {
+            const std::vector<MotionKey> own = motionOf(g);
+            grips.push_back({int(keys.size()), int(keys.size() + own.size())});
+            keys.insert(keys.end(), own.begin(), own.end());
+        }
+        fill(grips_, grips), fill(keys_, keys);
+        acceleration_.resize(vectorSize(padded())), torn_.resize(sample_.size()), slot_.resize(sample_.size()), speed_.resize(1);
+        bondEnds();
+    }
+    // At the beginning, or where a run stands.
+    void restart(const Scene& scene, const ObjectState& state) {
+        if (count() == 0) return;
+        std::vector<Vec3> velocities;
+        for (const int object : sample_.objects) velocities.push_back(scene.objects[size_t(object)].velocity);
+        fillVectors(position_, state.positions.empty() ? sample_.positions : state.positions);
+        fillVectors(velocity_, state.velocities.empty() ? velocities : state.velocities);
+        std::vector<BondEnd> bonds = whole_;
+        std::vector<real> torn(sample_.size(), 0);
+        for (size_t i = 0; i < torn.size(); ++i)
+            for (int b = firstBondOnHost_[i]; b < firstBondOnHost_[i + 1]; ++b)
+                if (!state.broken.empty() && state.broken[size_t(b)]) bonds[size_t(b)].stiffness = 0, torn[i] = 1;
+        fill(bonds_, bonds), fill(torn_, torn);
+        std::vector<int> slots(sample_.size(), -1);
+        fill(slot_, slots);
+        std::vector<Vec3> places;
+        std::vector<int> ids;
+        for (int i = 0; i < count(); ++i)
+            if (sample_.atSurface[size_t(i)]) places.push_back(sample_.positions[size_t(i)]), ids.push_back(i);
+        sorted_.upload(places, {}, {}, ids);
+        device_.forEach(sorted_.slots(), FetchPlaces{particles(), sorted_.view()});
+    }
+    ObjectState state() const {
+        ObjectState s;
+        s.positions = vectors(position_), s.velocities = vectors(velocity_);
+        std::vector<BondEnd> bonds(bonds_.size());
+        device_.download(bonds.data(), bonds_.data(), bonds.size());
+        for (const BondEnd& b : bonds) s.broken.push_back(b.stiffness <= 0);
+        return s;
+    }
+
+    void sort(const Grid& grid) {
+        device_.forEach(sorted_.slots(), FetchPlaces{particles(), sorted_.view()});
+        sorted_.sort(grid);
+        resizeSurface();
+        placeSurface();
+        boxes_.compute(device_, sorted_.view());
+    }
+    void placeSurface() { device_.forEach(sorted_.slots(), PlaceSurface{particles(), surface()}); }
+    int side() const { return sorted_.side(); }
+    void flip() { sorted_.flip(); }
+    void forgetLists(const Particles& fluid) {
+        objectsNearFluid_.forget(fluid);
+        for (NeighbourLists* lists : {&fluidNearObjects_, &objectsNearObjects_}) lists->forget(sorted_.view());
+    }
+    void findNeighbours(const Grid& grid, float skin, const Boxes& fluidBoxes, const int* fluidCells) {
+        const float reach = reach_ + skin;
+        objectsNearFluid_.build(device_, grid, reach, fluidBoxes, nullptr, boxes_, sorted_.cellStart());
+        fluidNearObjects_.build(device_, grid, reach, boxes_, nullptr, fluidBoxes, fluidCells);
+        objectsNearObjects_.build(device_, grid, reach, boxes_, nullptr, boxes_, sorted_.cellStart());
+    }
+    int64_t listBytes() const { return objectsNearFluid_.bytes() + fluidNearObjects_.bytes() + objectsNearObjects_.bytes(); }
+
+    // Forces on fluid and objects where they are.
+    void touch(const View& v) {
+        const ContactView c = contactView(v);
+        device_.forEach(v.fluid.slots, PushFluid{c});
+        device_.forEach(sorted_.slots(), PushObjects{c});
+        if (driver_) return;
+        device_.forEach(count(), StretchBonds{v, particles(), {force_.data()}, materials_.data(), cuts_.data(), int(cuts_.size())});
+    }
+    void move(const View& v) {
+        if (driver_) device_.forEach(count(), FollowDriver{v.state, particles(), {force_.data()}, {target_.data()}, {impulse_.data()}, arrival_});
+        else device_.forEach(count(), MoveObjects{v, particles(), grips_.data(), keys_.data()});
+        placeSurface();
+    }
+    // From `time` on; null: bonds and grips again.
+    void drive(ObjectDriver* driver, double time, Vec3 origin) {
+        driver_ = driver, origin_ = toDouble(origin);
+        if (!driver) return;
+        for (auto* field : {&target_, &impulse_}) field->resize(vectorSize(padded()));
+        fillVectors(acceleration_, std::vector<Vec3>(sample_.size()));
+        exchanged_ = time, arrival_ = -1;
+        exchange(time);
+    }
+    bool isDriven() const { return driver_; }
+    // When its time has come; says whether it had.
+    bool exchange(double time) {
+        if (time < arrival_) return false;
+        const double passed = time - exchanged_;
+        std::vector<Vec3d> forces = passed > 0 ? doubles(impulse_) : std::vector<Vec3d>(sample_.size());
+        for (Vec3d& f : forces) f = (passed > 0 ? 1 / passed : 0) * f;
+        std::vector<Vec3d> positions = doubles(position_), velocities = doubles(velocity_);
+        for (Vec3d& x : positions) x = x + origin_;
+        driver_->exchange(time, forces, positions, velocities);
+        CHECK(positions.size() == sample_.size() && velocities.size() == sample_.size());
+        for (Vec3d& x : positions) x = x - origin_;
+        fillVectors(target_, positions), fillVectors(velocity_, velocities), fillVectors(impulse_, std::vector<Vec3d>(sample_.size()));
+        exchanged_ = time, arrival_ = time + driver_->interval();
+        return true;
+    }
+    void findSpeed(const StepState* state, Extremes* fluid) {
+        device_.reduce(count(), FindObjectSpeed{particles(), state}, speed_.data());
+        device_.forEach(1, TakeFaster{fluid, speed_.data()});
+    }
+    void writeVertices(Vertex* out, float fluidSpacing) {
+        device_.forEach(count(), WriteObjectVertices{particles(), out, real(fluidSpacing / 2)});
+    }
+
+    // Of contacts, as live knobs say; `sound` in m/s.
+    void setLaw(const Scene& scene, double sound) {
+        if (count() == 0) return;
+        const Contact& knobs = scene.contact;
+        const double m = particleMass(scene), h = supportRadius(scene) / 2, rate = 0.4 * sound / h;
+        const double k = knobs.stiffness > 0 ? double(knobs.stiffness) : m * rate * rate, critical = 2 * std::sqrt(k * m);
+        law_.stiffness = real(k), law_.damping = real(knobs.damping * critical), law_.shear = real(knobs.shear * critical);
+        for (int n = 0; n < ContactLaw::values; ++n) law_.table[n] = real(std::exp(knobs.steepness * (1 - double(n) / (ContactLaw::values - 1))));
+        law_.influence = knobs.influence, law_.fluidRadius = scene.simulation.spacing / 2, law_.perMass = real(1 / m);
+        float largest = 0;
+        for (const float r : sample_.radii) largest = std::max(largest, r);
+        reach_ = std::max(knobs.influence * (scene.simulation.spacing / 2 + largest), 2 * largest);
+        longestStep_ = stableStep(scene, k * std::exp(double(knobs.steepness)));
+    }
+    // s, that springs and contacts bear.
+    double longestStep() const { return longestStep_; }
+
+private:
+    ObjectParticles particles() const {
+        return {count(), {position_.data()}, {velocity_.data()}, {acceleration_.data()}, {home_.data()}, {mass_.data()}, {radius_.data()}, {torn_.data()},
+                object_.data(), grip_.data(), firstBond_.data(), bonds_.data(), slot_.data()};
+    }
+    ObjectSurface surface() const {
+        const Particles sorted = sorted_.view();
+        return {sorted.slots, sorted.id, sorted.position, {surfaceVelocity_.data()}, {surfaceHome_.data()}, {surfaceRadius_.data()},
+                {surfaceObject_.data()}, {surfaceTorn_.data()}, {force_.data()}};
+    }
+    ContactView contactView(const View& v) {
+        const VectorField places = sorted_.view().position;
+        ContactView c{v, surface(), {objectsNearFluid_.data(), sorted_.cellStart(), places}, {fluidNearObjects_.data(), v.fluidNearFluid.cellStart, v.fluid.position},
+                      {objectsNearObjects_.data(), sorted_.cellStart(), places}, law_};
+        c.v.c.support = real(reach_), c.v.c.support2 = real(reach_ * reach_), c.v.c.inverseSupport2 = real(1 / (reach_ * reach_));
+        return c;
+    }
+    void resizeSurface() {
+        const int slots = sorted_.slots();
+        for (auto* field : {&surfaceVelocity_, &surfaceHome_, &force_}) field->resize(vectorSize(slots));
+        for (auto* field : {&surfaceRadius_, &surfaceObject_, &surfaceTorn_}) field->resize(size_t(slots));
+    }
+    // Both ends of each bond, beside those of the same particle.
+    void bondEnds() {
+        std::vector<int> first(sample_.size() + 1, 0);
+        for (const Bond& b : sample_.bonds) ++first[size_t(b.a) + 1], ++first[size_t(b.b) + 1];
+        for (size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
+        whole_.resize(2 * sample_.bonds.size());
+        std::vector<int> next = first;
+        for (const Bond& b : sample_.bonds) {
+            whole_[size_t(next[size_t(b.a)]++)] = {b.b, b.length, b.stiffness};
+            whole_[size_t(next[size_t(b.b)]++)] = {b.a, b.length, b.stiffness};
+        }
+        firstBondOnHost_ = first;
+        fill(firstBond_, first);
+    }
+    // A particle on its springs swings at no more than sqrt(2 sum k / m) and is slowed at no more than 2 sum c / m.
+    double stableStep(const Scene& scene, double contact) const {
+        double fastest = 0;
+        for (size_t i = 0; i < sample_.size(); ++i) {
+            const double m = sample_.masses[i], share = scene.objects[size_t(sample_.objects[i])].damping;
+            double k = 4 * contact, c = 4 * 2 * (scene.contact.damping + scene.contact.shear) * std::sqrt(contact * m);
+            for (int b = firstBondOnHost_[i]; b < firstBondOnHost_[i + 1]; ++b) {
+                const double spring = whole_[size_t(b)].stiffness;
+                k += 2 * spring, c += 2 * 2 * share * std::sqrt(spring * m / 2);
+            }
+            fastest = std::max(fastest, std::sqrt(k / m) + c / m);
+        }
+        return 1 / fastest;
+    }
+    int padded() const { return (count() + clusterSize - 1) / clusterSize * clusterSize; }
+    template <class V> void fillVectors(Buffer<real, Device>& buffer, const std::vector<V>& values) {
+        std::vector<real> x(vectorSize(padded()));
+        for (size_t i = 0; i < values.size(); ++i)
+            for (int k = 0; k < 3; ++k) x[vectorOffset(int(i), k)] = real(values[i][k]);
+        fill(buffer, x);
+    }
+    std::vector<Vec3d> doubles(const Buffer<real, Device>& buffer) const {
+        std::vector<real> x(buffer.size());
+        device_.download(x.data(), buffer.data(), x.size());
+        std::vector<Vec3d> out(sample_.size());
+        for (size_t i = 0; i < out.size(); ++i)
+            for (int k = 0; k < 3; ++k) out[i][k] = double(x[vectorOffset(int(i), k)]);
+        return out;
+    }
+    std::vector<Vec3> vectors(const Buffer<real, Device>& buffer) const {
+        std::vector<Vec3> out;
+        for (const Vec3d& v : doubles(buffer)) out.push_back(toFloat(v));
+        return out;
+    }
+    template <class T> void fill(Buffer<T, Device>& buffer, const std::vector<T>& host) {
+        buffer.resize(host.size());
+        device_.upload(buffer.data(), host.data(), host.size());
+    }
+
+    Device& device_;
+    ObjectSample sample_;
+    std::vector<BondEnd> whole_;          // as at the start
+    std::vector<int> firstBondOnHost_;
+    ContactLaw law_{};
+    float reach_ = 0;                     // m, of the longest contact
+    double longestStep_ = 1e9;
+    ObjectDriver* driver_ = nullptr;
+    double exchanged_ = 0, arrival_ = 0;  // s: when it was asked last, and when particles are to be where it said
+    Vec3d origin_;                        // m, the domain's lower corner
+    Buffer<real, Device> target_{device_}, impulse_{device_};
+    Buffer<real, Device> position_{device_}, velocity_{device_}, acceleration_{device_}, home_{device_}, mass_{device_}, radius_{device_}, torn_{device_};
+    Buffer<int, Device> object_{device_}, grip_{device_}, firstBond_{device_}, slot_{device_};
+    Buffer<BondEnd, Device> bonds_{device_};
+    Buffer<Material, Device> materials_{device_};
+    Buffer<Cut, Device> cuts_{device_};
+    Buffer<GripKeys, Device> grips_{device_};
+    Buffer<MotionKey, Device> keys_{device_};
+    Buffer<Extremes, Device> speed_{device_};
+    ParticleSet<Device> sorted_{device_, Kind::Objects};
+    Buffer<real, Device> surfaceVelocity_{device_}, surfaceHome_{device_}, surfaceRadius_{device_}, surfaceObject_{device_}, surfaceTorn_{device_}, force_{device_};
+    Boxes boxes_;
+    NeighbourLists objectsNearFluid_, fluidNearObjects_, objectsNearObjects_;
+};
+
+}  // namespace spindrift::LANES

@@ -1,0 +1,59 @@
+// Solids that float, as mechanics knows them: mass, turn, and where that puts them.
+#pragma once
+
+#include "sim/solid_motion.h"
+#include "sim/view.h"
+
+namespace spindrift::LANES {
+
+// In two dimensions of a slab one spacing thick.
+struct RigidBody {
+    double mass;                         // kg, 0: moves as prescribed
+    Vec3d centre, inverseInertia;        // m, of mass, from its middle; 1/(kg m^2) about that; in its own axes, the principal ones
+    real stiffness, damping, friction;   // of one ball where it touches (floating.h): N/m, N s/m, Coulomb's coefficient
+    real deepestBall;                    // m
+};
+
+// The quaternion of a small turn, radians, after another one; of length 1.
+HD inline void turnBy(double (&q)[4], Vec3d angle) {
+    const double size = sqrt(dot(angle, angle)), half = 0.5 * size, share = size > 1e-12 ? sin(half) / size : 0.5, c = cos(half);
+    const Vec3d a = share * angle, b{q[1], q[2], q[3]};
+    const Vec3d v = c * b + q[0] * a + cross(a, b);
+    const double w = c * q[0] - dot(a, b), length = sqrt(w * w + dot(v, v));
+    q[0] = w / length, q[1] = v.x / length, q[2] = v.y / length, q[3] = v.z / length;
+}
+// From its own axes into space, and back.
+struct Turn {
+    Vec3d axis[3];
+    HD explicit Turn(const double (&q)[4]) {
+        const double w = q[0], x = q[1], y = q[2], z = q[3];
+        axis[0] = {1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)};
+        axis[1] = {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)};
+        axis[2] = {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)};
+    }
+    HD Vec3d out(Vec3d a) const { return a.x * axis[0] + a.y * axis[1] + a.z * axis[2]; }
+    HD Vec3d in(Vec3d a) const { return {dot(a, axis[0]), dot(a, axis[1]), dot(a, axis[2])}; }
+};
+// rad/s
+HD inline Vec3d spinOf(const RigidBody& body, const SolidMotion& m) {
+    const Turn turn(m.turn);
+    const Vec3d l = turn.in(m.angularMomentum);
+    return turn.out({l.x * body.inverseInertia.x, l.y * body.inverseInertia.y, l.z * body.inverseInertia.z});
+}
+
+// Where a solid that floats is, `ahead` seconds further on.
+HD inline void placeFloating(SolidState& s, const RigidBody& body, SolidMotion m, double ahead) {
+    const Vec3d spin = spinOf(body, m);
+    turnBy(m.turn, ahead * spin);
+    const Turn turn(m.turn);
+    auto narrow = [](Vec3d a) { return Vector<real>{real(a.x), real(a.y), real(a.z)}; };
+    const Vec3d arm = -1.0 * turn.out(body.centre), centre = m.place + ahead * m.velocity;
+    for (int k = 0; k < 3; ++k) s.axis[k] = narrow(turn.axis[k]);
+    s.centreOfMass = narrow(centre);
+    s.middle = narrow(centre + arm);
+    s.velocity = narrow(m.velocity + cross(spin, arm));
+    s.spin = narrow(spin);
+    s.speed = real(sqrt(dot(m.velocity, m.velocity)) + double(s.reach) * sqrt(dot(spin, spin)));
+}
+
+}  // namespace spindrift::LANES

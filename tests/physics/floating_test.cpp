@@ -1,0 +1,194 @@
+// Solids that float: what fluid gives them it loses, they weigh what they should, fall, tumble and slide as mechanics says, and the mouse can drag them.
+#include "scene/json.h"
+#include "scene/mass.h"
+#include "sim/simulation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace spindrift {
+namespace {
+
+// A box with a little fluid in a corner, where nobody meets it.
+Scene sceneOf(const std::vector<std::string>& knobs) {
+    Scene scene;
+    scene.compute.backend = Backend::Cpu;
+    scene.domain.max = {1, 1, 1};
+    scene.simulation.spacing = 0.05f;
+    scene.fluid.bodies[0].max = {0.1f, 0.1f, 0.1f};
+    scene.time.mode = TimeMode::Fixed;
+    scene.time.step = 0.0005f;
+    for (const std::string& knob : knobs) setKnob(scene, knob);
+    return scene;
+}
+
+SolidMeasurement solidAfter(Simulation& simulation, int steps) {
+    simulation.step(steps);
+    return simulation.measure().solids[0];
+}
+
+// A cube of half density: its middle comes to rest where the water's level is then.
+TEST(Floating, CubeOfHalfDensityIsHalfSubmerged) {
+    for (const char* formulation : {"wcsph", "delta_sph"}) {
+        const Scene scene = sceneOf({std::string("simulation.formulation=") + formulation, "domain.max=0.4,0.4,0.4", "simulation.spacing=0.02", "time.mode=cfl",
+                                     "fluid.dissipation=1", R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.4,0.2,0.4]}])",
+                                     R"(solids=[{"shape":"block","min":[0.14,0.18,0.14],"max":[0.26,0.30,0.26],"density":500}])"});
+        auto simulation = makeSimulation(scene);
+        simulation->stopAt(2.0);
+        while (simulation->clock().time < 2.0) simulation->step(50);
+        const double cube = 0.12 * 0.12 * 0.12, level = (0.4 * 0.2 * 0.4 + cube / 2) / (0.4 * 0.4);
+        EXPECT_NEAR(simulation->measure().solids[0].position.y, level, 0.02) << formulation;
+        EXPECT_LT(length(simulation->measure().solids[0].velocity), 0.05) << formulation;
+    }
+}
+
+// Fluid runs into a solid, all alone in space: nothing of the momentum of both is lost, nor of the angular momentum but for where pairs are viscous.
+TEST(Floating, FluidAndSolidKeepTheirMomentum) {
+    for (const char* formulation : {"wcsph", "delta_sph"})
+        for (const char* integrator : {"symplectic_euler", "predictor_corrector"}) {
+            const Scene scene = sceneOf({std::string("simulation.formulation=") + formulation, std::string("time.integrator=") + integrator, "simulation.gravity=0,0,0",
+                                         "walls.kind=reflect", "time.mode=cfl", "domain.max=4,4,4", "fluid.viscosity=1", "compute.precision=double",
+                                         R"(fluid.bodies=[{"shape":"block","min":[1.5,1.8,1.8],"max":[1.9,2.2,2.2],"velocity":[1,0,0]}])",
+                                         R"(solids=[{"shape":"block","min":[2,1.9,1.7],"max":[2.3,2.4,2.2],"density":700}])"});
+            auto simulation = makeSimulation(scene);
+            const double mass = massOf(scene, scene.solids[0]).mass;
+            auto momentum = [&] {
+                const Measurement m = simulation->measure();
+                return m.momentum + mass * m.solids[0].velocity;
+            };
+            const Vec3d before = momentum();
+            simulation->step(1000);
+            EXPECT_GT(mass * simulation->measure().solids[0].velocity.x, 5) << "it was hit";
+            EXPECT_GT(length(simulation->measure().solids[0].spin), 0.05) << "beside its middle";
+            EXPECT_LT(length(momentum() - before) / length(before), 1e-5) << formulation << " " << integrator;
+        }
+}
+
+TEST(Floating, FallsAndTumblesFreely) {
+    Scene scene = sceneOf({"walls.kind=reflect", R"(solids=[{"shape":"block","min":[0.4,0.7,0.4],"max":[0.6,0.9,0.7],"density":2000,"velocity":[0.5,0,0],"spin":360,"spin_axis":"y"}])"});
+    auto simulation = makeSimulation(scene);
+    const SolidMeasurement s = solidAfter(*simulation, 400);
+    EXPECT_NEAR(s.position.y, 0.8 - 0.5 * 9.81 * 0.04, 0.001);
+    EXPECT_NEAR(s.position.x, 0.6, 1e-5);
+    EXPECT_NEAR(s.spin.y, 2 * std::numbers::pi, 1e-5);
+    // The vertices show the turn: 72 degrees after 0.2 s.
+    std::vector<Vertex> now(size_t(simulation->fluidCount() + simulation->solidParticleCount())), start = now;
+    makeSimulation(scene)->writeVertices({start.data()}, ColorBy::Plain, simulation->solidParticleCount());
+    simulation->writeVertices({now.data()}, ColorBy::Plain, simulation->solidParticleCount());
+    const Vertex &a = start[size_t(simulation->fluidCount())], &b = now[size_t(simulation->fluidCount())];
+    const double angle = 0.4 * std::numbers::pi, x = a.x - 0.5, z = a.z - 0.55;
+    EXPECT_NEAR(b.x - s.position.x, x * std::cos(angle) + z * std::sin(angle), 1e-4);
+    EXPECT_NEAR(b.z - s.position.z, z * std::cos(angle) - x * std::sin(angle), 1e-4);
+}
+
+// A top that turns about no axis of its own: its axis goes round the angular momentum at L / I (Euler), and its energy stays.
+TEST(Floating, TopPrecesses) {
+    Scene scene = sceneOf({"walls.kind=reflect", "simulation.gravity=0,0,0", R"(solids=[{"shape":"cylinder","axis":"z","center":[0.5,0.5,0.5],"radius":0.15,"height":0.1,"density":1000}])"});
+    const Mass mass = massOf(scene, scene.solids[0]);
+    auto simulation = makeSimulation(scene);
+    RunState state = simulation->state();
+    const Vec3d momentum = mass.inertia.z * Vec3d{0, 0, 8} + mass.inertia.x * Vec3d{2, 0, 0};
+    state.solids[0].angularMomentum = momentum;
+    simulation->restart(state);
+    const double rate = length(momentum) / mass.inertia.x, turn = 0.5 * std::numbers::pi;   // a quarter of a precession
+    const SolidMeasurement s = solidAfter(*simulation, int(std::round(turn / rate / 0.0005)));
+    const Vec3d along = (1 / length(momentum)) * momentum, axis{0, 0, 1};
+    const double share = dot(axis, along);
+    const Vec3d expected = share * along + cross(along, axis);   // Rodrigues, by 90 degrees
+    const SolidMotion now = simulation->state().solids[0];
+    const double w = now.turn[0], x = now.turn[1], y = now.turn[2], z = now.turn[3];
+    EXPECT_LT(length(Vec3d{2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)} - expected), 0.01);
+    EXPECT_LT(length(now.angularMomentum - momentum), 1e-9);
+    EXPECT_NEAR(dot(s.spin, momentum), mass.inertia.z * 64 + mass.inertia.x * 4, 0.01 * mass.inertia.z * 64);   // twice its energy
+}
+
+// A block slides to a halt after v^2 / (2 mu g), and stays upright and on the floor.
+TEST(Floating, BlockSlidesToAHalt) {
+    const Scene scene = sceneOf({"walls.kind=reflect", "domain.max=3,1,1",
+                                 R"(solids=[{"shape":"block","min":[0.4,0,0.4],"max":[0.8,0.2,0.7],"density":1000,"velocity":[2,0,0],"friction":0.4}])"});
+    auto simulation = makeSimulation(scene);
+    const SolidMeasurement s = solidAfter(*simulation, 1600);   // it takes 0.51 s
+    EXPECT_NEAR(s.position.x, 0.6 + 4 / (2 * 0.4 * 9.81), 0.01);
+    EXPECT_NEAR(s.position.y, 0.1, 0.001);
+    EXPECT_LT(length(s.velocity) + length(s.spin), 0.005);
+}
+
+// Solids that meet: momentum is kept, and a stack of them stands.
+TEST(Floating, SolidsPushEachOther) {
+    Scene scene = sceneOf({"walls.kind=reflect", "simulation.gravity=0,0,0", "walls.restitution=1",
+                           R"(solids=[{"shape":"block","min":[0.2,0.4,0.4],"max":[0.4,0.6,0.6],"density":1000,"velocity":[1,0,0],"friction":0},)"
+                           R"({"shape":"block","min":[0.5,0.4,0.4],"max":[0.7,0.6,0.6],"density":1000,"friction":0}])"});
+    auto simulation = makeSimulation(scene);
+    simulation->step(500);
+    const Measurement m = simulation->measure();
+    EXPECT_NEAR(m.solids[0].velocity.x + m.solids[1].velocity.x, 1, 1e-4);
+    EXPECT_NEAR(m.solids[1].velocity.x, 1, 0.05);   // all of it: as heavy, and elastic
+    scene = sceneOf({"walls.kind=reflect", R"(solids=[{"shape":"block","min":[0.4,0,0.4],"max":[0.7,0.2,0.7],"density":500},)"
+                     R"({"shape":"block","min":[0.45,0.2,0.45],"max":[0.65,0.35,0.65],"density":3000}])"});
+    simulation = makeSimulation(scene);
+    simulation->step(1000);
+    EXPECT_NEAR(simulation->measure().solids[1].position.y, 0.275, 0.003);
+    EXPECT_LT(length(simulation->measure().solids[1].velocity), 0.005);
+}
+
+// What the mouse holds comes to where it is wanted, floating or not, and a run that goes on knows where it was left.
+TEST(Floating, MouseDragsThem) {
+    for (const char* density : {"0", "800"}) {
+        const Scene scene = sceneOf({"time.mode=cfl", R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[1,0.4,1]}])",
+                                     std::string(R"(solids=[{"shape":"sphere","center":[0.3,0.3,0.5],"radius":0.12,"density":)") + density + "}]"});
+        auto simulation = makeSimulation(scene);
+        simulation->step(20);
+        simulation->hold({0, {0.7f, 0.3f, 0.5f}});
+        simulation->stopAt(1.5);
+        while (simulation->clock().time < 1.5) simulation->step(20);
+        const Vec3d middle = simulation->measure().solids[0].position;
+        EXPECT_NEAR(middle.x, 0.7, 0.02) << density;
+        for (const Particle& p : simulation->particles()) EXPECT_GT(length(p.position - middle), 0.12 - 1e-3);
+        simulation->hold({});
+        const RunState left = simulation->state();
+        EXPECT_NEAR(makeSimulation(scene, left)->measure().solids[0].position.x, middle.x, 1e-5) << density;
+        simulation->step(50);
+        if (scene.solids[0].density == 0) {
+            EXPECT_NEAR(simulation->measure().solids[0].position.x, middle.x, 1e-6);
+        }
+    }
+}
+
+TEST(Floating, MassesAreThoseOfTheShapes) {
+    auto massOfSolid = [](const std::string& solid, int dimensions = 3) {
+        Scene scene = sceneOf({"solids=[" + solid + "]", "simulation.dimensions=" + std::to_string(dimensions)});
+        return massOf(scene, scene.solids[0]);
+    };
+    Mass m = massOfSolid(R"({"shape":"block","min":[0,0,0],"max":[1,2,3],"density":10})");
+    EXPECT_NEAR(m.mass, 60, 1e-9);
+    EXPECT_NEAR(m.inertia.x, 60.0 / 12 * (4 + 9), 1e-9);
+    EXPECT_NEAR(m.inertia.z, 60.0 / 12 * (1 + 4), 1e-9);
+    m = massOfSolid(R"({"shape":"sphere","radius":0.5,"density":10})");
+    EXPECT_NEAR(m.mass, 10 * std::numbers::pi / 6, 1e-6);
+    EXPECT_NEAR(m.inertia.y, 0.4 * m.mass * 0.25, 1e-6);
+    m = massOfSolid(R"({"shape":"cylinder","axis":"x","radius":0.5,"height":2,"density":10})");
+    EXPECT_NEAR(m.inertia.x, 0.5 * m.mass * 0.25, 1e-6);
+    EXPECT_NEAR(m.inertia.y, m.mass * (3 * 0.25 + 4) / 12, 1e-6);
+    // A wedge by adding up small blocks.
+    m = massOfSolid(R"({"shape":"wedge","min":[0,0,0],"max":[2,1,3],"density":1})");
+    double mass = 0, moment = 0, xx = 0, yy = 0;
+    const int n = 400;
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+            const double x = 2.0 * (i + 0.5) / n - 1, y = (j + 0.5) / n;
+            if (y > 1 - std::abs(x)) continue;
+            const double part = 2.0 / n * 1.0 / n * 3;
+            mass += part, moment += part * y, xx += part * x * x, yy += part * y * y;
+        }
+    EXPECT_NEAR(m.mass, mass, 0.01);
+    EXPECT_NEAR(0.5 + m.centre.y, moment / mass, 0.003);
+    EXPECT_NEAR(m.inertia.z, xx + yy - moment * moment / mass, 0.005);
+    m = massOfSolid(R"({"shape":"sphere","radius":0.5,"density":1000})", 2);
+    EXPECT_NEAR(m.mass, 1000 * std::numbers::pi * 0.25 * 0.05, 1e-3);
+    EXPECT_NEAR(m.inertia.z, 0.5 * m.mass * 0.25, 1e-4);
+}
+
+}  // namespace
+}  // namespace spindrift

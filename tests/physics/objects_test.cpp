@@ -1,0 +1,134 @@
+// Elastic objects: they bend as beams do, break when they should, keep momentum, and fluid and objects keep out of each other's way.
+#include "scene/json.h"
+#include "scene/sample_object.h"
+#include "sim/simulation.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace spindrift {
+namespace {
+
+// A box with a little fluid in a corner.
+Scene sceneOf(const std::vector<std::string>& knobs) {
+    Scene scene;
+    scene.compute.backend = Backend::Cpu;
+    scene.domain.max = {1, 1, 1};
+    scene.simulation.spacing = 0.05f;
+    scene.fluid.bodies[0].max = {0.1f, 0.1f, 0.1f};
+    scene.walls.kind = WallKind::Reflect;
+    for (const std::string& knob : knobs) setKnob(scene, knob);
+    return scene;
+}
+
+void runUntil(Simulation& simulation, double time) {
+    simulation.stopAt(time);
+    while (simulation.clock().time < time) simulation.step(1);
+}
+
+Vec3d momentumOf(const Scene& scene, Simulation& simulation) {
+    const ObjectSample sample = sampleObjects(scene);
+    const ObjectState state = simulation.state().objects;
+    Vec3d sum = simulation.measure().momentum;
+    for (size_t i = 0; i < sample.size(); ++i) sum = sum + double(sample.masses[i]) * toDouble(state.velocities[i]);
+    return sum;
+}
+
+// A bar that is held at one end sags under its weight: w = rho g A L^4 / (8 E I), and what it is sheared by, rho g L^2 / (2 k G) (Timoshenko's k = 5/6).
+TEST(Objects, BarSagsAsABeamDoes) {
+    for (const int dimensions : {2, 3}) {
+        const double L = 0.6, h = 0.1, E = 2e6, rho = 1000, g = 0.5;
+        Scene scene = sceneOf({"simulation.gravity=0,-0.5,0", "simulation.dimensions=" + std::to_string(dimensions), "domain.max=1,1,0.4",
+                               R"(objects=[{"shape":"block","min":[0.2,0.45,0.15],"max":[0.8,0.55,0.25],"spacing":0.0125,"youngs_modulus":2e6,"damping":0}])",
+                               R"(grips=[{"min":[0.1,0.4,0],"max":[0.2001,0.6,0.4]}])", "simulation.spacing=0.0125", "fluid.bodies[0].max=0.05,0.05,0.05",
+                               "fluid.sound_speed=2"});
+        auto simulation = makeSimulation(scene);
+        const ObjectSample sample = sampleObjects(scene);
+        // It swings about its sag, from 0 to twice as much.
+        double lowest = 0;
+        while (simulation->clock().time < 0.5) {
+            simulation->step(20);
+            const ObjectState state = simulation->state().objects;
+            double sag = 0, n = 0;
+            for (size_t i = 0; i < sample.size(); ++i)
+                if (sample.positions[i].x > 0.799f) sag += double(sample.positions[i].y) - state.positions[i].y, n += 1;
+            lowest = std::max(lowest, sag / n);
+        }
+        const double sag = lowest / 2;
+        const double nu = dimensions == 2 ? 1.0 / 3 : 0.25;
+        const double bent = rho * g * std::pow(L, 4) * 12 / (8 * E * h * h), sheared = rho * g * L * L / (2 * 5.0 / 6 * E / (2 * (1 + nu)));
+        std::printf("%d dimensions: sag %.5f m, beam %.5f m\n", dimensions, sag, bent + sheared);
+        EXPECT_NEAR(sag / (bent + sheared), 1, 0.05) << dimensions;
+    }
+}
+
+// Pulled at one end at a steady rate a chain breaks at the stated strain, and not before.
+TEST(Objects, BondsBreakAtTheirStrain) {
+    Scene scene = sceneOf({"simulation.gravity=0,0,0", "simulation.dimensions=2",
+                           R"(objects=[{"shape":"sheet","min":[0.3,0.5,0.3],"max":[0.7,0.5,0.6],"breaking_strain":0.2,"youngs_modulus":1e6,"damping":0.5}])",
+                           R"(grips=[{"min":[0.25,0.4,0],"max":[0.301,0.6,1]},{"min":[0.699,0.4,0],"max":[0.75,0.6,1],"velocity":[0.05,0,0]}])"});
+    auto simulation = makeSimulation(scene);
+    auto broken = [&] {
+        const ObjectState state = simulation->state().objects;
+        return std::count(state.broken.begin(), state.broken.end(), 1);
+    };
+    runUntil(*simulation, 0.97 * 0.2 * 0.4 / 0.05);
+    EXPECT_EQ(broken(), 0);
+    runUntil(*simulation, 1.1 * 0.2 * 0.4 / 0.05);
+    EXPECT_GT(broken(), 0);
+    EXPECT_EQ(broken() % 2, 0) << "both ends of a bond know";
+}
+
+// Fluid runs into a block, alone in space. The forces of a pair are opposite, and so is what bonds do.
+TEST(Objects, FluidAndObjectsKeepTheirMomentum) {
+    for (const char* formulation : {"wcsph", "delta_sph"}) {
+        Scene scene = sceneOf({std::string("simulation.formulation=") + formulation, "simulation.gravity=0,0,0", "domain.max=4,4,4", "compute.precision=double",
+                               R"(fluid.bodies=[{"shape":"block","min":[1.5,1.8,1.8],"max":[1.9,2.2,2.2],"velocity":[1,0,0]}])",
+                               R"(objects=[{"shape":"block","min":[2,1.9,1.7],"max":[2.3,2.4,2.2],"density":700,"youngs_modulus":2e4}])"});
+        auto simulation = makeSimulation(scene);
+        const Vec3d before = momentumOf(scene, *simulation);
+        EXPECT_NEAR(before.x, 64, 0.01);
+        simulation->step(1000);
+        EXPECT_LT(simulation->measure().momentum.x, 60) << "it hit";
+        EXPECT_LT(length(momentumOf(scene, *simulation) - before) / length(before), 1e-5) << formulation;
+    }
+}
+
+// A tube that is full, and a sheet under water: nobody is on the other side after a while, whatever the ratio of particle sizes.
+TEST(Objects, WaterStaysInABag) {
+    for (const float spacing : {0.025f, 0.05f, 0.1f}) {
+        Scene scene = sceneOf({"fluid.bodies=[{\"shape\":\"block\",\"min\":[0.2,0.5,0.2],\"max\":[0.8,0.8,0.8]}]", "objects=[{\"shape\":\"sheet\",\"min\":[0,0.4,0],\"max\":[1,0.4,1],\"youngs_modulus\":3e6,\"thickness\":0.02}]",
+                               R"(grips=[{"min":[0,0,0],"max":[0.051,1,1]},{"min":[0.949,0,0],"max":[1,1,1]},{"min":[0,0,0],"max":[1,1,0.051]},{"min":[0,0,0.949],"max":[1,1,1]}])"});
+        scene.objects[0].spacing = spacing;
+        auto simulation = makeSimulation(scene);
+        runUntil(*simulation, 1.0);
+        const ObjectState state = simulation->state().objects;
+        double lowest = 1;
+        for (const Vec3& x : state.positions) lowest = std::min<double>(lowest, x.y);
+        EXPECT_LT(lowest, 0.395) << "it carries the water";
+        int through = 0;
+        for (const Particle& p : simulation->particles()) through += p.position.y < lowest - 0.01;
+        EXPECT_EQ(through, 0) << spacing;
+    }
+}
+
+// Two blocks that meet, and a sheet that falls on itself, keep their particles apart.
+TEST(Objects, KeepOutOfEachOther) {
+    Scene scene = sceneOf({"simulation.gravity=0,0,0", R"(objects=[{"shape":"block","min":[0.2,0.4,0.4],"max":[0.4,0.6,0.6],"velocity":[1,0,0],"youngs_modulus":1e5},)"
+                           R"({"shape":"block","min":[0.6,0.4,0.4],"max":[0.8,0.6,0.6],"youngs_modulus":1e5}])"});
+    auto simulation = makeSimulation(scene);
+    const Vec3d before = momentumOf(scene, *simulation);
+    runUntil(*simulation, 0.4);
+    const ObjectSample sample = sampleObjects(scene);
+    const ObjectState state = simulation->state().objects;
+    double left = 0, right = 0, n = 0;
+    for (size_t i = 0; i < sample.size(); ++i) (sample.objects[i] == 0 ? left : right) += state.velocities[i].x, n += 0.5;
+    EXPECT_LT(left / n, 0.3);
+    EXPECT_GT(right / n, 0.6);
+    EXPECT_LT(length(momentumOf(scene, *simulation) - before) / length(before), 1e-4);
+}
+
+}  // namespace
+}  // namespace spindrift
