@@ -3,6 +3,7 @@
 #pragma once
 
 #include "device/buffer.h"
+#include "sim/collisions.h"
 #include "sim/constants.h"
 #include "sim/integrate.h"
 #include "sim/local_steps.h"
@@ -35,6 +36,7 @@ public:
         walls_.upload(wallsAtHome_, {}, {}, fluidCount_);
         solids_.place(scene, wallsAtHome_, solidSizes_, fluidCount_);
         if (wallsMove()) walls_.move();
+        if (solids_.count() > 0) fluid_.keepPlace();
         clock_.resize(1);
         extremes_.resize(1);
         apply(scene);
@@ -294,6 +296,10 @@ private:
     }
     void moveSolids() { placeSolids(0); }
     void moveSolidsHalfWay() { placeSolids(0.5); }   // the clock is at the step's end
+    void keepOutOfSolids() {
+        if (solids_.moves()) solids_.sweep(clock_.data());
+        onFluid<KeepOutOfSolids>();
+    }
     void placeSolids(double stepsBack) {
         solids_.move(clock_.data(), stepsBack);
         solids_.placeWalls(view());
