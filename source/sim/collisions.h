@@ -6,8 +6,14 @@
 
 namespace spindrift::LANES {
 
-// The way of a particle from the share `begin` of a step to its end, m. A straight line in space, it is a curved one as a solid sees it that turns.
-struct Way { Vector<real> from, to; real begin; };
+// The way of a particle from the share `begin` of a step to its end, m. A straight line in space, it is a curved one as a solid sees it that turns; along the
+// one that carries it, it is straight in that one's own axes.
+struct Way {
+    Vector<real> from, to;
+    real begin;
+    int carrier;   // -1: none
+    Vector<real> ownFrom, ownTo, stays;   // stays: in space, where it would be without sliding
+};
 // Where and when it meets a solid, and that one's normal there, both in its own axes.
 struct Meeting { real share; Vector<real> at, normal; };
 
@@ -15,12 +21,7 @@ struct Meeting { real share; Vector<real> at, normal; };
 struct SolidInStep {
     const SolidState& s;
     const Constants& c;
-    Vector<real> turn;   // rad, in the step, in the solid's own axes
 
-    HD SolidInStep(const SolidState& solid, const View& v) : s(solid), c(v.c) {
-        const real dt = real(v.state->dt);
-        turn = {dt * dot(s.spin, s.axis[0]), dt * dot(s.spin, s.axis[1]), dt * dot(s.spin, s.axis[2])};
-    }
     HD static Vector<real> placeAt(const Way& way, real share) {
         const real along = way.begin < 1 ? (share - way.begin) / (1 - way.begin) : real(1);
         return addScaled(way.from, along, way.to - way.from);
@@ -42,11 +43,11 @@ struct SolidInStep {
         const Vector<real> a = rotated(own, share);
         return a.x * s.axisBefore[0] + a.y * s.axisBefore[1] + a.z * s.axisBefore[2];
     }
-    // About the axis of `turn`, by that share of it (Rodrigues).
+    // By that share of its turn (Rodrigues).
     HD Vector<real> rotated(Vector<real> a, real share) const {
-        const real angle = squareRoot(dot(turn, turn));
+        const real angle = squareRoot(dot(s.turn, s.turn));
         if (angle * share == 0) return a;
-        const Vector<real> k = (1 / angle) * turn;
+        const Vector<real> k = (1 / angle) * s.turn;
         const real cosine = cos(angle * share), sine = sin(angle * share);
         return addScaled(addScaled(cosine * a, sine, cross(k, a)), (1 - cosine) * dot(k, a), k);
     }
@@ -54,7 +55,7 @@ struct SolidInStep {
     // In pieces that are nearly straight as the solid sees them, and short enough for one image of it.
     HD bool meets(const Way& way, Meeting& m) const {
         const Vector<real> line = way.to - way.from;
-        real pieces = 1 + 4 * squareRoot(dot(turn, turn)) * (1 - way.begin);
+        real pieces = 1 + 4 * squareRoot(dot(s.turn, s.turn)) * (1 - way.begin);
         if (c.periodic) pieces = pieces + squareRoot(dot(line, line)) / c.support;
         const int count = int(min(pieces, real(1000)));
         for (int k = 0; k < count; ++k) {
@@ -62,12 +63,18 @@ struct SolidInStep {
             const real end = k + 1 == count ? real(1) : way.begin + (1 - way.begin) * real(k + 1) / real(count), half = (begin + end) / 2;
             const Vector<real> shift = shiftOf(armAt(placeAt(way, half), half));
             const Vector<real> p = own(armAt(placeAt(way, begin), begin) - shift, begin), q = own(armAt(placeAt(way, end), end) - shift, end);
-            if (!(s.field ? entersMesh(p, q, m) : entersConvex(p, q, m))) continue;
+            if (!enters(p, q, m)) continue;
             m.share = begin + m.share * (end - begin);
             return true;
         }
         return false;
     }
+    HD bool meetsCarried(const Way& way, Meeting& m) const {
+        if (!enters(way.ownFrom, way.ownTo, m)) return false;
+        m.share = way.begin + m.share * (1 - way.begin);
+        return true;
+    }
+    HD bool enters(Vector<real> p, Vector<real> q, Meeting& m) const { return s.field ? entersMesh(p, q, m) : entersConvex(p, q, m); }
     // Who is inside already and goes on inward is stopped where it is nearest to the surface.
     HD bool goesInward(Vector<real> p, Vector<real> q, real distance, Meeting& m) const {
         m.share = 0, m.at = addScaled(p, c.gap - distance, m.normal);
@@ -166,39 +173,45 @@ struct KeepOutOfSolids {
         const Vector<R> armBefore = arm - (to - from) + wide(s.middle - s.middleBefore);
         const Vector<R> own{dot(arm, wide(s.axis[0])), dot(arm, wide(s.axis[1])), dot(arm, wide(s.axis[2]))};
         const Vector<R> before{dot(armBefore, wide(s.axisBefore[0])), dot(armBefore, wide(s.axisBefore[1])), dot(armBefore, wide(s.axisBefore[2]))};
-        const R turn = real(2 * v.state->dt) * squareRoot(dot(s.spin, s.spin));
+        const R turn = 2 * squareRoot(dot(s.turn, s.turn));
         const Vector<R> line = own - before;
         Vector<R> n{0, 0, 0};
         return nearest(s, own, n) - squareRoot(dot(line, line)) - turn * squareRoot(max(dot(arm, arm), dot(armBefore, armBefore)));
     }
     HD void stop(int i) const {
         const Vector<real> x = load(v.fluid.position, i);
-        Way way{begin(i, x), x, 0};
+        Way way{begin(i, x), x, 0, -1, {}, {}, {}};
         Vector<real> u = load(v.fluid.velocity, i);
         bool free = false;
         for (int k = 0; k < mostMeetings && !free; ++k) {
             int first = -1;
             Meeting soonest{2, {0, 0, 0}, {0, 0, 0}};
-            for (int s = 0; s < v.solidCount; ++s)
-                if (Meeting m; SolidInStep(v.solids[s], v).meets(way, m) && m.share < soonest.share) soonest = m, first = s;
+            for (int s = 0; s < v.solidCount; ++s) {
+                const SolidInStep solid{v.solids[s], v.c};
+                Meeting m{2, {0, 0, 0}, {0, 0, 0}};
+                if ((s == way.carrier ? solid.meetsCarried(way, m) : solid.meets(way, m)) && m.share < soonest.share) soonest = m, first = s;
+            }
             free = first < 0;
-            if (!free) slide(v.solids[first], soonest, way, u);
+            if (!free) slide(first, soonest, way, u);
         }
         // Between solids it stays where it was stopped last.
-        Vector<real> end = free ? way.to : way.from;
+        Vector<real> end = free ? way.to : way.stays;
         for (int s = 0; s < v.solidCount; ++s) leave(v.solids[s], end, u);
         store(v.fluid.position, i, end);
         store(v.fluid.velocity, i, u);
     }
     // It is carried along, and goes on in the plane that touches the solid there, in the box.
-    HD void slide(const SolidState& s, const Meeting& m, Way& way, Vector<real>& u) const {
-        const SolidInStep solid(s, v);
+    HD void slide(int carrier, const Meeting& m, Way& way, Vector<real>& u) const {
+        const SolidState& s = v.solids[carrier];
+        const SolidInStep solid{s, v.c};
         const Vector<real> place = SolidInStep::placeAt(way, m.share), arm = solid.armAt(place, m.share), at = solid.inSpace(m.at, m.share);
         const Vector<real> shift = solid.shiftOf(arm - at), endArm = solid.armAt(way.to, 1) - shift, end = solid.own(endArm, 1);
         const Vector<real> slid = turned(s, subtractScaled(end, dot(end - m.at, m.normal), m.normal));
         way.from = place - arm + shift + at;
         way.to = inBox(s.middle + shift + slid);
-        way.begin = m.share;
+        way.begin = m.share, way.carrier = carrier;
+        way.ownFrom = m.at, way.ownTo = solid.own(way.to - s.middle - shift, 1);
+        way.stays = inBox(s.middle + shift + turned(s, m.at));
         bounce(s, slid, turned(s, m.normal), u);
     }
     HD Vector<real> inBox(Vector<real> x) const {
@@ -217,7 +230,7 @@ struct KeepOutOfSolids {
     }
     // Who is inside all the same, for it began there or was squeezed, is put on the surface.
     HD void leave(const SolidState& s, Vector<real>& x, Vector<real>& u) const {
-        const SolidInStep solid(s, v);
+        const SolidInStep solid{s, v.c};
         Vector<real> arm = x - s.middle, n{0, 0, 0};
         arm = arm - solid.shiftOf(arm);
         const real depth = -surface(s, SolidInStep::components(s.axis, arm), n);

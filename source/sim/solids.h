@@ -60,6 +60,29 @@ struct RememberPose {
         for (int k = 0; k < 3; ++k) s.axisBefore[k] = s.axis[k];
     }
 };
+// What lies between that and its pose now is a rotation; whole turns are known by its spin alone.
+struct MeasureTurn {
+    using Index = int;
+    SolidState* solids;
+    const StepState* state;
+    HD void operator()(int i) const {
+        SolidState& s = solids[i];
+        auto m = [&](int row, int column) LANE_CALL { return double(dot(s.axisBefore[row], s.axis[column])); };
+        double axis[3] = {m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1)};
+        double length = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
+        const double angle = atan2(length, m(0, 0) + m(1, 1) + m(2, 2) - 1), pi = 3.14159265358979323846;
+        const double asked[3] = {state->dt * double(dot(s.spin, s.axis[0])), state->dt * double(dot(s.spin, s.axis[1])), state->dt * double(dot(s.spin, s.axis[2]))};
+        if (length < 1e-5) {   // by nearly nothing, or by half a turn
+            for (int k = 0; k < 3; ++k) axis[k] = asked[k];
+            length = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
+        }
+        s.turn = {0, 0, 0};
+        if (!(length > 0)) return;
+        const double along = (asked[0] * axis[0] + asked[1] * axis[1] + asked[2] * axis[2]) / length;
+        const double all = (angle + 2 * pi * floor((along - angle) / (2 * pi) + 0.5)) / length;
+        s.turn = {real(all * axis[0]), real(all * axis[1]), real(all * axis[2])};
+    }
+};
 
 // Convex::nearest, for lanes: signed distance of p from a solid's surface in its own axes, and the outward normal there.
 template <class R> HD inline R nearest(const SolidState& s, Vector<R> p, Vector<R>& n) {
@@ -258,6 +281,7 @@ public:
         move(state, 1);
         device_.forEach(count_, RememberPose{states_.data()});
         move(state, 0);
+        device_.forEach(count_, MeasureTurn{states_.data(), state});
     }
     void placeWalls(const View& v) { device_.forEach(v.walls.slots, PlaceWalls{v, home()}); }
     void keepMasses(const Particles& walls) { device_.forEach(walls.slots, KeepWallMass{walls, home()}); }

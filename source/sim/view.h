@@ -166,7 +166,8 @@ struct SolidState {
     real offset[Convex::mostPlanes];
     real radius;
     Vector<real> across;
-    Vector<real> middleBefore, axisBefore[3];   // where the step began, for collisions
+    Vector<real> middleBefore, axisBefore[3];   // where the step began, for collisions,
+    Vector<real> turn;             // rad, and how it has turned since, in its own axes
     const real* field;             // m from the surface at the nodes of a lattice, x first; null: there is none
     Vector<real> fieldLow;         // m, its first node
     real nodesPerMetre;
