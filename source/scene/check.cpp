@@ -383,11 +383,12 @@ int64_t estimateMemory(const Scene& scene, ParticleCount count) {
     return int64_t(std::min(bytes, 9e18));
 }
 
-// What an integrator keeps over an evaluation of the forces, and its sorted copies, on a GPU.
+// What an integrator keeps over an evaluation of the forces, or collisions over a step, and its sorted copies, on a GPU.
 static double keptBytes(const Scene& scene) {
     constexpr double Vector = 2 * 16, Scalar = 2 * 4;
-    if (scene.time.integrator == Integrator::SymplecticEuler) return 0;
-    if (scene.time.integrator == Integrator::VelocityVerlet) return Vector;
+    const double place = scene.solids.empty() ? 0 : Vector;   // where ways began
+    if (scene.time.integrator == Integrator::SymplecticEuler) return place;
+    if (scene.time.integrator == Integrator::VelocityVerlet) return Vector + place;
     return 2 * Vector + (carriesDensity(scene) ? Scalar : 0);
 }
 

@@ -271,15 +271,27 @@ DistanceField Mesh::field(double spacing) const {
     f.low = -0.5 * spacing * Vec3d{double(f.nodes.x - 1), double(f.nodes.y - 1), double(f.nodes.z - 1)};
     const size_t row = size_t(f.nodes.x), plane = row * size_t(f.nodes.y);
     f.distances.resize(plane * size_t(f.nodes.z));
+    // Cubes of nodes that are all far from the surface are filled from their middles: outside with what is surely free, inside in a straight line.
+    constexpr int Side = 8;
+    const Int3 cubes{(f.nodes.x + Side - 1) / Side, (f.nodes.y + Side - 1) / Side, (f.nodes.z + Side - 1) / Side};
+    const double reach = 0.5 * std::sqrt(3.0) * (Side - 1) * spacing, near = 6 * spacing;
 #pragma omp parallel for schedule(dynamic, 1)
-    for (int z = 0; z < f.nodes.z; ++z) {
+    for (int cube = 0; cube < cubes.x * cubes.y * cubes.z; ++cube) {
+        const int x = cube % cubes.x * Side, y = cube / cubes.x % cubes.y * Side, z = cube / (cubes.x * cubes.y) * Side;
+        auto at = [&](double i, double j, double k) { return middle + f.low + spacing * Vec3d{x + i, y + j, z + k}; };
+        constexpr double half = 0.5 * (Side - 1);
+        const Vec3d center = at(half, half, half);
         int triangle = -1;
-        for (int y = 0; y < f.nodes.y; ++y)
-            for (int x = 0; x < f.nodes.x; ++x) {
-                const int along = y % 2 ? f.nodes.x - 1 - x : x;   // there and back, so that neighbours follow each other
-                const Vec3d p = middle + f.low + spacing * Vec3d{double(along), double(y), double(z)};
-                f.distances[size_t(z) * plane + size_t(y) * row + size_t(along)] = float(nearest(p, triangle).distance);
-            }
+        const Nearest whole = nearest(center, triangle);
+        for (int k = 0; k < Side && z + k < f.nodes.z; ++k)
+            for (int j = 0; j < Side && y + j < f.nodes.y; ++j)
+                for (int i = 0; i < Side && x + i < f.nodes.x; ++i) {
+                    const Vec3d p = at(i, j, k), from = p - center;
+                    const double distance = whole.distance > reach + near    ? whole.distance - length(from)
+                                            : whole.distance < -reach - near ? whole.distance + dot(from, whole.normal)
+                                                                             : nearest(p, triangle).distance;
+                    f.distances[size_t(z + k) * plane + size_t(y + j) * row + size_t(x + i)] = float(distance);
+                }
     }
     return f;
 }
@@ -316,9 +328,9 @@ public:
     explicit ObjReader(const std::string& path) : path_(path) {}
     Mesh read() {
         std::ifstream stream(path_, std::ios::binary);
-        if (!stream || std::filesystem::is_directory(path_)) refuse(path_, "can't be read; check the path");
         std::error_code none;
-        if (std::filesystem::file_size(path_, none) > LargestFile && !none) refuse(path_, "is larger than 512 MiB; simplify the surface");
+        if (!stream || !std::filesystem::is_regular_file(path_, none)) refuse(path_, "can't be read; check the path");
+        if (std::filesystem::file_size(path_, none) > LargestFile) refuse(path_, "is larger than 512 MiB; simplify the surface");
         for (std::string line; std::getline(stream, line);) {
             ++line_;
             readLine(line);

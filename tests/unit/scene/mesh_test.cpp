@@ -114,6 +114,7 @@ TEST(Meshes, MistakesAreNamed) {
     for (const auto& [text, words] : mistakes) EXPECT_NE(complaint(text).find(words), std::string::npos) << complaint(text);
     EXPECT_THROW(readMesh("/nowhere/a.obj"), Error);
     EXPECT_THROW(readMesh(testing::TempDir()), Error);
+    EXPECT_THROW(readMesh("/dev/zero"), Error);
     EXPECT_THROW(readMesh(""), Error);
 }
 
@@ -240,6 +241,32 @@ TEST(Meshes, ThinOnesAreFound) {
     EXPECT_EQ(meshOf(boxSurface({0, 0, 0}, {1, 1, 1})).thinnest(0.1).thickness, 0.1);
     EXPECT_NEAR(meshOf(boxSurface({0, 0, 0}, {1, 0.03, 1})).thinnest(0.1).thickness, 0.03, 1e-12);
     EXPECT_NEAR(meshOf(torusSurface(1, 0.02, 60, 12)).thinnest(0.1).thickness, 0.04, 0.004);
+}
+
+// Near the surface they are exact, elsewhere on the right side and never too far.
+TEST(Meshes, FieldsHoldTheirDistances) {
+    for (const Mesh& mesh : {meshOf(torusSurface(1, 0.4, 40, 24)), meshOf(sphereSurface({3, 2, 1}, 1, 3))}) {
+        const double spacing = mesh.fieldSpacing(0.06);
+        EXPECT_EQ(spacing, 0.03);
+        const DistanceField f = mesh.field(spacing);
+        const Vec3d middle = 0.5 * (mesh.low() + mesh.high());
+        std::mt19937 random(4);
+        int near = 0;
+        for (int k = 0; k < 20000; ++k) {
+            const Int3 at{int(random() % unsigned(f.nodes.x)), int(random() % unsigned(f.nodes.y)), int(random() % unsigned(f.nodes.z))};
+            const double distance = f.distances[(size_t(at.z) * size_t(f.nodes.y) + size_t(at.y)) * size_t(f.nodes.x) + size_t(at.x)];
+            const double exact = mesh.nearest(middle + f.low + spacing * Vec3d{double(at.x), double(at.y), double(at.z)}).distance;
+            ASSERT_EQ(distance < 0, exact < 0);
+            ASSERT_TRUE(distance < exact + 1e-6 || exact < 0) << distance << " " << exact;
+            if (std::abs(exact) > 5 * spacing) continue;
+            ++near;
+            ASSERT_NEAR(distance, exact, 1e-6);
+        }
+        EXPECT_GT(near, 1000);
+    }
+    // A thin wall asks for a finer one, and too fine a one is refused.
+    EXPECT_NEAR(meshOf(boxSurface({0, 0, 0}, {1, 0.03, 1})).fieldSpacing(0.1), 0.015, 1e-9);
+    EXPECT_THROW(meshOf(boxSurface({0, 0, 0}, {1, 0.0003, 1})).fieldSpacing(0.1), Error);
 }
 
 Solid solidOf(const std::string& path) {
