@@ -45,6 +45,8 @@ Quantity quantity(ColorBy by) {
             return {"acceleration", "m/s²"};
         case ColorBy::Fluid:
             return {"density at rest", "x the scene's"};
+        case ColorBy::Surface:
+            return {"surface", ""};
         case ColorBy::Id:
             return {"particle id", ""};
     }

@@ -164,6 +164,8 @@ void checkMovingFace(const Scene& scene) {
 
 void checkBody(const Scene& scene, size_t index) {
     const Body& body = scene.fluid.bodies[index];
+    if (body.shape == Shape::Plane || body.shape == Shape::Mesh)
+        refuse(bodyPath(index) + ".shape", fmt::format("a {} is for solids; name another shape", enumNames(Shape())[size_t(body.shape)]));
     if (body.shape == Shape::File) return;   // when it is known to fit into memory
     const bool cornered = body.shape == Shape::Block || body.shape == Shape::Wedge;
     const Vec3 half = toFloat(halfExtent(body));
@@ -229,19 +231,44 @@ void checkKeyframes(const Solid& solid, const std::string& path) {
         refuse(path, fmt::format("moves at {:.3g} m/s, faster than 1e4; check the times and the distances", largestSpeed(solid)));
 }
 
+// It goes on for ever, so that it can neither turn nor be beside itself in the next period.
+void checkPlane(const Scene& scene, const Solid& plane, size_t index) {
+    const std::string path = fmt::format("solids[{}]", index);
+    if (length(plane.normal) < 1e-3f) refuse(path + ".normal", "has no direction; name one to the side where fluid is");
+    if (plane.moves()) refuse(path, "a plane is without an end and does not move; leave velocity, spin and keyframes out, or use a block");
+    if (scene.simulation.dimensions == 2 && plane.normal.z != 0) refuse(path + ".normal", "leads out of the plane, and there are two dimensions; leave z 0");
+    for (int k = 0; k < scene.simulation.dimensions; ++k)
+        if (scene.domain.periodic(k) && plane.normal[k] != 0)
+            refuse(path + ".normal", fmt::format("{} is a periodic axis, along which a plane must go on; set it to 0, or use a block", "xyz"[k]));
+    if (!plane.name.empty()) requireColumnName(scene.solids, index, "solids");
+}
+
+void checkMesh(const Scene& scene, size_t index) {
+    const Solid& solid = scene.solids[index];
+    if (solid.shape != Shape::Mesh) return;
+    const std::string path = fmt::format("solids[{}]", index);
+    if (scene.simulation.dimensions == 2) refuse(path + ".shape", "a mesh has three dimensions; use another shape, or simulation.dimensions 3");
+    try {
+        readMesh(solid.path)->fieldSpacing(scene.simulation.spacing / solid.scale);
+    } catch (const Error& error) { refuse(path + ".path", error.what()); }
+    const Vec3d half = halfExtent(solid);
+    if (length(half) > 1e4) refuse(path + ".scale", fmt::format("the mesh is {:.3g} m large, more than 2e4; lower it", 2 * length(half)));
+}
+
 void checkSolid(const Scene& scene, size_t index) {
     const Solid& solid = scene.solids[index];
     const std::string path = fmt::format("solids[{}]", index);
     if (scene.simulation.formulation == Formulation::Classic)
         refuse(path, "the classic formulation has no solids; use wcsph");
     if (solid.shape == Shape::File) refuse(path + ".shape", "a file is for bodies of fluid; name another shape");
+    if (solid.shape == Shape::Plane) return checkPlane(scene, solid, index);
     const Vec3d half = halfExtent(solid), middle = convexOf(solid, 3).middle;
     bool outside = false;
     for (int k = 0; k < scene.simulation.dimensions; ++k) {
         const double extent = 2 * half[k];
-        if (extent < scene.simulation.spacing)
-            refuse(path, fmt::format("{:.4g} m along {} is less than simulation.spacing, {} m, which fluid could pass; thicken it",
-                                     extent, "xyz"[k], scene.simulation.spacing));
+        const double least = 0.1 * double(scene.simulation.spacing);
+        if (extent < least)
+            refuse(path, fmt::format("{:.4g} m along {} is less than a tenth of simulation.spacing, {:.4g} m; thicken it", extent, "xyz"[k], least));
         if (scene.domain.periodic(k) && extent > scene.domain.max[k] - scene.domain.min[k] - 2 * supportRadius(scene))
             refuse(path, fmt::format("leaves no room for fluid along {}, a periodic axis; shorten it", "xyz"[k]));
         outside |= middle[k] + half[k] < scene.domain.min[k] || middle[k] - half[k] > scene.domain.max[k];
@@ -269,6 +296,8 @@ void checkObject(const Scene& scene, size_t index) {
     const std::string path = fmt::format("objects[{}]", index);
     const bool flat = scene.simulation.dimensions == 2;
     const float spacing = spacingOf(scene, o);
+    if (spacing < 0.05f * scene.simulation.spacing)
+        refuse(path + ".spacing", fmt::format("{:.4g} m is less than a twentieth of simulation.spacing; raise it, or 0 for the same", spacing));
     Vec3 low = o.min, high = o.max;
     int sides = 0;
     if (o.shape == ObjectShape::Tube) {
@@ -301,6 +330,9 @@ void checkObject(const Scene& scene, size_t index) {
 
 void checkObjects(const Scene& scene) {
     for (size_t i = 0; i < scene.objects.size(); ++i) checkObject(scene, i);
+    constexpr double Most = 2e7;
+    if (const double count = countObjectParticles(scene); count > Most)
+        throw Error(Exit::Memory, fmt::format("objects: {:.3g} particles are more than {:.0g}; raise their spacing", count, Most));
     for (size_t i = 0; i < scene.grips.size(); ++i) {
         const std::string path = fmt::format("grips[{}]", i);
         checkBox(scene.grips[i], path);
@@ -430,11 +462,12 @@ int64_t estimateMemory(const Scene& scene, ParticleCount count) {
     return int64_t(std::min(bytes, 9e18));
 }
 
-// What an integrator keeps over an evaluation of the forces, and its sorted copies, on a GPU.
+// What an integrator keeps over an evaluation of the forces, or collisions over a step, and its sorted copies, on a GPU.
 static double keptBytes(const Scene& scene) {
     constexpr double Vector = 2 * 16, Scalar = 2 * 4;
-    if (scene.time.integrator == Integrator::SymplecticEuler || scene.time.integrator == Integrator::Split) return 0;
-    if (scene.time.integrator == Integrator::VelocityVerlet) return Vector;
+    const double place = scene.solids.empty() ? 0 : Vector;   // where ways began
+    if (scene.time.integrator == Integrator::SymplecticEuler || scene.time.integrator == Integrator::Split) return place;
+    if (scene.time.integrator == Integrator::VelocityVerlet) return Vector + place;
     return 2 * Vector + (carriesDensity(scene) ? Scalar : 0);
 }
 
@@ -456,6 +489,7 @@ void checkScene(const Scene& scene, const std::string& place, std::optional<Part
         if (scene.fluid.bodies.empty())
             refuse("fluid.bodies", "is empty; add a body of fluid, e.g. {\"shape\": \"block\"}");
         for (size_t b = 0; b < scene.fluid.bodies.size(); ++b) checkBody(scene, b);
+        for (size_t i = 0; i < scene.solids.size(); ++i) checkMesh(scene, i);
         const ParticleCount count = begun ? *begun : countBodies(scene);
         checkFills(scene, count);
         checkMovingFace(scene);

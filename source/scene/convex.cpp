@@ -5,6 +5,11 @@
 namespace spindrift {
 
 Vec3d halfExtent(const Form& form) {
+    if (form.shape == Shape::Plane) return {};
+    if (form.shape == Shape::Mesh) {
+        const auto mesh = readMesh(form.path);
+        return 0.5 * double(form.scale) * (mesh->high() - mesh->low());
+    }
     if (form.shape == Shape::Block || form.shape == Shape::Wedge) return 0.5 * (toDouble(form.max) - toDouble(form.min));
     Vec3d half{form.radius, form.radius, form.radius};
     if (form.shape == Shape::Cylinder) half[int(form.axis)] = 0.5 * double(form.height);
@@ -25,6 +30,21 @@ Convex convexOf(const Form& form, int dimensions) {
     const Vec3d half = halfExtent(form);
     const bool cornered = form.shape == Shape::Block || form.shape == Shape::Wedge;
     Convex c;
+    if (form.shape == Shape::Plane) {
+        c.middle = toDouble(form.center);
+        c.add(toDouble(form.normal), {});
+        return c;
+    }
+    if (form.shape == Shape::Mesh) {
+        c.mesh = readMesh(form.path), c.scale = form.scale;
+        c.middle = toDouble(form.offset) + 0.5 * c.scale * (c.mesh->low() + c.mesh->high());
+        for (int k = 0; k < 3; ++k) {
+            Vec3d up{0, 0, 0};
+            up[k] = 1;
+            c.add(up, half), c.add(-1.0 * up, -1.0 * half);
+        }
+        return c;
+    }
     c.middle = cornered ? 0.5 * (toDouble(form.min) + toDouble(form.max)) : toDouble(form.center);
     for (int k = 0; k < dimensions; ++k) {
         const bool flat = form.shape == Shape::Block || (form.shape == Shape::Wedge && k == 2) ||
@@ -54,7 +74,16 @@ Convex::Nearest Convex::nearest(Vec3d p) const {
         const Vec3d away = far > 0 ? (1 / far) * d : across.x > 0 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
         if (far - radius > best.distance) best = {far - radius, away};
     }
-    return best;
+    if (!mesh) return best;
+    // Far from its box nobody asks for more.
+    int triangle = -1;
+    const Vec3d half{offset[0], offset[2], offset[4]};
+    return best.distance > 0.1 * length(half) ? best : nearestOfMesh(p, triangle);
+}
+
+Convex::Nearest Convex::nearestOfMesh(Vec3d p, int& triangle) const {
+    const Mesh::Nearest n = mesh->nearest((1 / scale) * p + 0.5 * (mesh->low() + mesh->high()), triangle);
+    return {scale * n.distance, n.normal};
 }
 
 }  // namespace spindrift

@@ -122,9 +122,11 @@ Scene parseScene(const std::string& text, const std::string& place) {
 Scene loadScene(const std::string& file) {
     Scene scene = parseScene(readText(file), file);
     // A file that a scene names is beside it; known by its whole path the scene can be saved anywhere.
-    for (Body& body : scene.fluid.bodies)
-        if (!body.path.empty())
-            body.path = (std::filesystem::absolute(file).parent_path() / body.path).lexically_normal().string();
+    auto findBeside = [&](std::string& path) {
+        if (!path.empty()) path = (std::filesystem::absolute(file).parent_path() / path).lexically_normal().string();
+    };
+    for (Body& body : scene.fluid.bodies) findBeside(body.path);
+    for (Solid& solid : scene.solids) findBeside(solid.path);
     return scene;
 }
 

@@ -6,7 +6,17 @@
 
 namespace spindrift {
 
+static Mass massOfMesh(const Solid& solid) {
+    const Convex shape = convexOf(solid, 3);
+    const Mesh::Weight w = shape.mesh->weigh();
+    const double s = shape.scale, volume = s * s * s, rho = solid.density;
+    Mass m{rho * volume * w.volume, s * (w.centroid - 0.5 * (shape.mesh->low() + shape.mesh->high())), {}};
+    for (int k = 0; k < 3; ++k) m.inertia[k] = (rho * volume * s * s) * Vec3d{w.inertia[k][0], w.inertia[k][1], w.inertia[k][2]};
+    return m;
+}
+
 Mass massOf(const Scene& scene, const Solid& solid) {
+    if (solid.shape == Shape::Mesh) return massOfMesh(solid);
     const bool flat = scene.simulation.dimensions == 2;
     Vec3d half = halfExtent(solid);
     if (flat) half.z = 0.5 * double(scene.simulation.spacing);
@@ -28,7 +38,7 @@ Mass massOf(const Scene& scene, const Solid& solid) {
             if (k != axis) squares[k] = r * r / 4;
     }
     const double mass = solid.density * volume;
-    return {mass, centre, mass * Vec3d{squares.y + squares.z, squares.z + squares.x, squares.x + squares.y}};
+    return {mass, centre, {{mass * (squares.y + squares.z), 0, 0}, {0, mass * (squares.z + squares.x), 0}, {0, 0, mass * (squares.x + squares.y)}}};
 }
 
 }  // namespace spindrift

@@ -4,11 +4,11 @@
 
 namespace spindrift {
 
-// kg; m from the solid's middle to the centre of mass, in its own axes; kg m^2 about that centre: xx, yy, zz. The axes of every shape are its
-// principal ones. In two dimensions of a slab one spacing thick.
+// kg; m from the solid's middle to the centre of mass, in its own axes; the tensor of inertia about that centre, kg m^2, row by row. In two dimensions of a
+// slab one spacing thick.
 struct Mass {
     double mass;
-    Vec3d centre, inertia;
+    Vec3d centre, inertia[3];
 };
 Mass massOf(const Scene&, const Solid&);
 

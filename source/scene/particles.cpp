@@ -480,9 +480,14 @@ double soundSpeed(const Scene& s, const FluidExtent& fluid) {
 // Whole shells of the bounding box.
 static double mostInSolid(const Scene& scene, const Solid& solid) {
     double all = 1, inner = 1;
+    if (solid.shape == Shape::Plane) return mostOfPlane(scene);
     for (int k = 0; k < scene.simulation.dimensions; ++k) {
         const double n = std::ceil(2 * halfExtent(solid)[k] / scene.simulation.spacing) + 1;
         all *= n, inner *= std::max(0.0, n - 2 * boundaryLayers(scene) - 2);
+    }
+    if (solid.shape == Shape::Mesh) {   // near its surface, which may be anywhere in the box
+        const double dx = scene.simulation.spacing / double(solid.scale);
+        return std::min(all, 2 * (boundaryLayers(scene) + 1) * (readMesh(solid.path)->area() / (dx * dx) + 10));
     }
     return all - inner;
 }

@@ -15,4 +15,7 @@ int boundaryLayers(const Scene&);
 struct SolidSample { std::vector<Vec3> positions; std::vector<float> volumes; };
 SolidSample sampleSolid(const Scene&, const Solid&);
 
+// No plane has more particles.
+double mostOfPlane(const Scene&);
+
 }  // namespace spindrift

@@ -19,9 +19,9 @@ enum class EquationOfState { Tait, Linear };
 enum class WallKind { Reflect, Particles };
 enum class TimeMode { Fixed, Cfl, Local };
 enum class Integrator { SymplecticEuler, VelocityVerlet, PredictorCorrector, Split };
-enum class Shape { Block, Sphere, Cylinder, Wedge, File };
+enum class Shape { Block, Sphere, Cylinder, Wedge, Plane, Mesh, File };
 enum class Axis { X, Y, Z };
-enum class ColorBy { Plain, Velocity, Pressure, Density, Acceleration, Id, Fluid };
+enum class ColorBy { Plain, Velocity, Pressure, Density, Acceleration, Id, Fluid, Surface };
 enum class Field { Uniform, TaylorGreen, Stretching, Rotation, Shear, SoundWave };
 enum class StartPlaces { Lattice, Relaxed };
 enum class StartPressure { None, Hydrostatic };
@@ -32,7 +32,8 @@ enum class Order { Mean, Linear };
 enum class ObjectShape { Block, Sheet, Tube };
 
 // A block reads min and max, a wedge too: its ridge runs along z, above the middle of its base. A sphere reads center and
-// radius, a cylinder center, radius, height and axis. A file, of fluid only, has no shape but particles.
+// radius, a cylinder center, radius, height and axis. A file, of fluid only, has no shape but particles. Of solids only: a plane reads center, a point of
+// it, and normal; a mesh, triangles of a file, path, scale and offset.
 struct Form {
     Shape shape = Shape::Block;
     Vec3 min{0, 0, 0}, max{0.5f, 0.5f, 0.5f};   // m
@@ -40,6 +41,10 @@ struct Form {
     float radius = 0.1f;                        // m
     float height = 0.2f;                        // m
     Axis axis = Axis::Y;
+    Vec3 normal{0, 1, 0};                       // to the side where fluid is, of any length
+    std::string path{};                         // of a file, beside the scene file when relative
+    float scale = 1;                            // m per unit of a mesh's file
+    Vec3 offset{0, 0, 0};                       // m, where the mesh's origin is
 };
 
 // One body of fluid, filled on a lattice, or with the particles of a file as they are.
@@ -49,7 +54,6 @@ struct Body : Form {
     float restDensity = 0;                      // kg/m^3 at rest, 0 = the fluid's; other ones make a mixture
     float viscosity = -1;                       // Pa s, -1 = the fluid's
     StartPressure pressure = StartPressure::None;   // where a field has its own, that is added
-    std::string path{};                         // of a file, beside the scene file when relative
 };
 
 // Where a solid is at one time, relative to its place in the scene.

@@ -35,10 +35,10 @@ constexpr auto enumNames(TimeMode) { return std::array{"fixed", "cfl", "local"};
 constexpr auto enumNames(Integrator) {
     return std::array{"symplectic_euler", "velocity_verlet", "predictor_corrector", "split"};
 }
-constexpr auto enumNames(Shape) { return std::array{"block", "sphere", "cylinder", "wedge", "file"}; }
+constexpr auto enumNames(Shape) { return std::array{"block", "sphere", "cylinder", "wedge", "plane", "mesh", "file"}; }
 constexpr auto enumNames(Axis) { return std::array{"x", "y", "z"}; }
 constexpr auto enumNames(ColorBy) {
-    return std::array{"plain", "velocity", "pressure", "density", "acceleration", "id", "fluid"};
+    return std::array{"plain", "velocity", "pressure", "density", "acceleration", "id", "fluid", "surface"};
 }
 constexpr auto enumNames(ColorMap) { return std::array{"viridis", "cividis", "turbo", "coolwarm"}; }
 constexpr auto enumNames(Field) {
@@ -58,13 +58,14 @@ constexpr auto enumNames(Order) { return std::array{"mean", "linear"}; }
 // Which knobs a shape has depends on which it is; that is visited first, so that a reader has set it before the others are chosen.
 template <class F, class Visitor>
 void visitForm(F& f, const std::string& at, Visitor&& visit) {
-    visit(at + ".shape", f.shape, Knob{"", 0, 0, "block, sphere, cylinder or wedge; of fluid also file: the particles of another run or program", Restart});
-    if (f.shape == Shape::File) return;
+    visit(at + ".shape", f.shape, Knob{"", 0, 0, "block, sphere, cylinder or wedge; of fluid also file: the particles of another run or program; of obstacles also plane: all that is behind it, and mesh: triangles of a file", Restart});
+    if (f.shape == Shape::File || f.shape == Shape::Mesh) return;
     if (f.shape == Shape::Block || f.shape == Shape::Wedge) {
         visit(at + ".min", f.min, Knob{"m", -1e4f, 1e4f, "lower corner", Restart});
         visit(at + ".max", f.max, Knob{"m", -1e4f, 1e4f, "upper corner", Restart});
     } else {
-        visit(at + ".center", f.center, Knob{"m", -1e4f, 1e4f, "centre", Restart});
+        visit(at + ".center", f.center, Knob{"m", -1e4f, 1e4f, "centre; of a plane any of its points", Restart});
+        if (f.shape == Shape::Plane) return;
         visit(at + ".radius", f.radius, Knob{"m", 1e-6f, 1e4f, "radius", Restart});
     }
     if (f.shape == Shape::Cylinder) {
@@ -103,6 +104,13 @@ template <class S, class Visitor>
 requires std::is_same_v<std::remove_const_t<S>, Solid>
 void visitMember(S& s, const std::string& at, Visitor&& visit) {
     visitForm(s, at, visit);
+    if (s.shape == Shape::Plane)
+        visit(at + ".normal", s.normal, Knob{"", -1e4f, 1e4f, "of a plane, to the side where fluid is; of any length", Restart});
+    if (s.shape == Shape::Mesh) {
+        visit(at + ".path", s.path, Knob{"", 0, 0, "OBJ file of a closed surface; a relative path starts at the scene file", Restart});
+        visit(at + ".scale", s.scale, Knob{"", 1e-6f, 1e6f, "m per unit of the file", Restart});
+        visit(at + ".offset", s.offset, Knob{"m", -1e4f, 1e4f, "where the file's origin is", Restart});
+    }
     visit(at + ".name", s.name, Knob{"", 0, 0, "of its columns in time series", Restart});
     visit(at + ".velocity", s.velocity, Knob{"m/s", -1e3f, 1e3f, "with which it goes on and on; of one that floats at the start", Restart});
     visit(at + ".spin", s.spin, Knob{"degrees/s", -1e5f, 1e5f, "turns about its middle", Restart});

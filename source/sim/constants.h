@@ -159,6 +159,7 @@ template <class Kernel> Constants makeConstants(const Scene& s, const FluidExten
     c.center = toVector(0.5f * size);
     slideFace(s, size, c);
     for (const Solid& solid : s.solids) c.solidSpeed = std::max(c.solidSpeed, real(spindrift::largestSpeed(solid)));
+    c.gap = real(std::max(1e-4 * double(s.simulation.spacing), 5e-7 * double(std::max({size.x, size.y, size.z}))));
     c.low = toVector(s.walls.margin * size);
     c.high = toVector((1 - s.walls.margin) * size);
     c.periodic = s.domain.periodicX || s.domain.periodicY || s.domain.periodicZ;

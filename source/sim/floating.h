@@ -2,7 +2,7 @@
 #pragma once
 
 #include "scene/mass.h"
-#include "sim/solids.h"
+#include "sim/collisions.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,7 +30,7 @@ struct SumTouches {
         if (owner < 0) return;
         const SolidState& own = v.solids[owner];
         Vector<real> normal{0, 0, 0};
-        const real depth = -nearest(own, load(home.position, v.walls.id[i] - home.firstId) - own.home, normal);
+        const real depth = -surface(own, load(home.position, v.walls.id[i] - home.firstId) - own.home, normal);
         if (depth > bodies[owner].deepestBall) return;
         const Ball ball{load(v.walls.position, i), load(v.walls.ownVelocity, i), depth};
         Vector<real> force{0, 0, 0};
@@ -58,7 +58,7 @@ struct SumTouches {
         const Vector<real> arm = imageOf(v.c, b.position - s.middle);
         if (dot(arm, arm) > (s.reach + b.radius) * (s.reach + b.radius)) return {0, 0, 0};
         Vector<real> n{0, 0, 0};
-        const real distance = nearest(s, Vector<real>{dot(arm, s.axis[0]), dot(arm, s.axis[1]), dot(arm, s.axis[2])}, n);
+        const real distance = surface(s, Vector<real>{dot(arm, s.axis[0]), dot(arm, s.axis[1]), dot(arm, s.axis[2])}, n);
         const RigidBody &mine = bodies[owner], &theirs = bodies[other];
         const RigidBody& softer = mine.stiffness < theirs.stiffness ? mine : theirs;
         RigidBody both = softer;
@@ -71,6 +71,34 @@ struct SumTouches {
         const Vector<real> along = velocity - apart * n;
         const real slip = squareRoot(dot(along, along));
         return addScaled(normal * n, -min(b.damping, b.friction * normal / max(slip, real(1e-12))), along);
+    }
+};
+
+// The momentum that particles lost where a solid stopped them, kg m/s, and the angular momentum about its centre.
+struct SumBounces {
+    View v;
+    Bounces bounces;
+    real mass;   // kg, of a fluid particle
+    int solid;
+    HD void addTo(Touch& sum, int i) const {
+        if (v.fluid.id[i] < 0 || load(bounces.solid, i) != real(solid)) return;
+        const Vector<real> change = load(bounces.change, i), arm = imageOf(v.c, load(v.fluid.position, i) - v.solids[solid].centreOfMass);
+        const Vec3d lost = -double(mass * massRatio(v.fluid, i)) * Vec3d{change.x, change.y, change.z};
+        sum.add({lost, cross(Vec3d{arm.x, arm.y, arm.z}, lost)});
+    }
+};
+struct TakeMomentum {
+    using Index = int;
+    const RigidBody* bodies;
+    const Touch* given;
+    SolidMotion* motions;
+    int dimensions;
+    HD void operator()(int s) const {
+        if (bodies[s].mass <= 0) return;
+        Touch t = given[s];
+        if (dimensions == 2) t.force.z = t.torque.x = t.torque.y = 0;
+        motions[s].velocity = motions[s].velocity + (1 / bodies[s].mass) * t.force;
+        motions[s].angularMomentum = motions[s].angularMomentum + t.torque;
     }
 };
 
@@ -168,6 +196,16 @@ public:
             device_.reduce(v.walls.slots, SumTouches{v, home, bodies_.data(), s}, touches_.data() + s);
         }
     }
+    Bounces bounces(int slots) {
+        change_.resize(vectorSize(slots)), stoppedBy_.resize(size_t(slots));
+        return {{change_.data()}, {stoppedBy_.data()}};
+    }
+    void takeMomentum(const Scene& scene, const View& v) {
+        for (int s = 0; s < v.solidCount; ++s)
+            if (scene.solids[size_t(s)].floats())
+                device_.reduce(v.fluid.slots, SumBounces{v, bounces(v.fluid.slots), real(particleMass(scene)), s}, touches_.data() + s);
+        device_.forEach(v.solidCount, TakeMomentum{bodies_.data(), touches_.data(), motions_.data(), scene.simulation.dimensions});
+    }
     void move(const View& v, double fluidMass, const Hold& hold, double kick, double drift) {
         device_.forEach(v.solidCount, MoveFloating{v, bodies_.data(), motions_.data(), loads_.data(), touches_.data(), fluidMass, hold, kick, drift});
     }
@@ -179,7 +217,7 @@ private:
     }
     static RigidBody bodyOf(const Scene& scene, const Solid& solid, double step) {
         const real without = real(1e30);
-        RigidBody body{0, {}, {}, without, without, solid.friction, real(0.75) * scene.simulation.spacing};
+        RigidBody body{0, {}, {{}, {}, {}}, without, without, solid.friction, real(0.75) * scene.simulation.spacing};
         if (!solid.floats()) return body;
         const Mass mass = massOf(scene, solid);
         const Convex shape = convexOf(solid, scene.simulation.dimensions);
@@ -189,10 +227,16 @@ private:
         const double face = std::max(1.0, outermost / (2 * scene.simulation.dimensions)), rate = 0.2 / step;
         const double lost = std::log(std::max(double(scene.walls.restitution), 1e-6)), ratio = -lost / std::hypot(lost, std::numbers::pi);
         body.mass = mass.mass, body.centre = mass.centre;
-        body.inverseInertia = {1 / mass.inertia.x, 1 / mass.inertia.y, 1 / mass.inertia.z};
+        invert(mass.inertia, body.inverseInertia);
         body.stiffness = real(body.mass * rate * rate / face);
         body.damping = real(2 * ratio * body.mass * rate / face);
         return body;
+    }
+    // Of a symmetric matrix, by cofactors.
+    static void invert(const Vec3d (&m)[3], Vec3d (&inverse)[3]) {
+        const Vec3d x = cross(m[1], m[2]), y = cross(m[2], m[0]), z = cross(m[0], m[1]);
+        const double determinant = dot(m[0], x);
+        inverse[0] = (1 / determinant) * x, inverse[1] = (1 / determinant) * y, inverse[2] = (1 / determinant) * z;
     }
     static SolidMotion motionAtHome(const Scene& scene, const Solid& solid, const RigidBody& body) {
         SolidMotion m;
@@ -200,7 +244,7 @@ private:
         m.place = Vec3d{home.middle.x, home.middle.y, home.middle.z} + body.centre;
         m.velocity = toDouble(solid.velocity);
         const int axis = int(solid.spinAxis);
-        m.angularMomentum[axis] = double(solid.spin) * std::numbers::pi / 180 / body.inverseInertia[axis];
+        m.angularMomentum = (double(solid.spin) * std::numbers::pi / 180) * massOf(scene, solid).inertia[axis];
         return m;
     }
 
@@ -209,6 +253,7 @@ private:
     Buffer<SolidMotion, Device> motions_{device_};
     Buffer<SolidLoad, Device> loads_{device_};
     Buffer<Touch, Device> touches_{device_};
+    Buffer<real, Device> change_{device_}, stoppedBy_{device_};   // of fluid, see Bounces
 };
 
 }  // namespace spindrift::LANES

@@ -59,15 +59,25 @@ template <unsigned what> struct Integrate {
     }
     HD void drift(Quad i, R dt, Vector<R>& u) const {
         const Vector<R> before = load(v.fluid.position, i);
-        Vector<R> x = addScaled(what & Resume ? load(v.fluid.keptPosition, i) : before, dt, u);
+        const Vector<R> from = what & Resume ? load(v.fluid.keptPosition, i) : before;
+        Vector<R> x = addScaled(from, dt, u);
         if constexpr (what & DriftShifted) {
             x = addScaled(x, dt, load(v.fluid.shiftVelocity, i));
             u = addScaled(u, dt, load(v.fluid.shiftAcceleration, i));
         }
+        const Vector<R> unwrapped = x;
         v.c.period.x > 0 ? wrap(x.x, v.c.period.x) : bounce(x.x, v.c.low.x, v.c.high.x, u.x, u.y, u.z);
         v.c.period.y > 0 ? wrap(x.y, v.c.period.y) : bounce(x.y, v.c.low.y, v.c.high.y, u.y, u.z, u.x);
         v.c.period.z > 0 ? wrap(x.z, v.c.period.z) : bounce(x.z, v.c.low.z, v.c.high.z, u.z, u.x, u.y);
         store(v.fluid.position, i, keepEmpty(before, x));
+        if ((what & Drift) && v.solidCount > 0) keepWay(i, from, unwrapped, keepEmpty(before, x));
+    }
+    // Where the way began that ends here, in a line with it over periodic sides.
+    HD void keepWay(Quad i, Vector<R> from, Vector<R> to, Vector<R> place) const {
+        if (v.c.period.x > 0) from.x = place.x - (to.x - from.x);
+        if (v.c.period.y > 0) from.y = place.y - (to.y - from.y);
+        if (v.c.period.z > 0) from.z = place.z - (to.z - from.z);
+        store(v.fluid.keptPosition, i, from);
     }
     // The box would pull empty slots in among the particles.
     HD static Vector<R> keepEmpty(Vector<R> before, Vector<R> after) {

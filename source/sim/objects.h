@@ -146,7 +146,7 @@ struct MoveObjects {
         const Vector<real> arm = imageOf(v.c, x - s.middle);
         if (dot(arm, arm) > (s.reach + radius) * (s.reach + radius)) return;
         Vector<real> n{0, 0, 0};
-        const real depth = radius - nearest(s, Vector<real>{dot(arm, s.axis[0]), dot(arm, s.axis[1]), dot(arm, s.axis[2])}, n);
+        const real depth = radius - surface(s, Vector<real>{dot(arm, s.axis[0]), dot(arm, s.axis[1]), dot(arm, s.axis[2])}, n);
         if (depth <= 0) return;
         n = turned(s, n);
         const real towards = min(dot(u - s.velocity - cross(s.spin, arm), n), real(0));

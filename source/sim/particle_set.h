@@ -124,6 +124,8 @@ public:
     // What integrators need besides: a velocity, or all of a state.
     void keepVelocity() { keepsVelocity_ = true; }
     void keepState() { keepsVelocity_ = keepsState_ = true; }
+    // Where each began its step, for collisions.
+    void keepPlace() { keepsPlace_ = true; }
     // Sums of pairs for forces that come on top of the others; normals of the surface.
     void addForces(bool pairs, bool normals) {
         addsPairs_ = pairs, hasNormals_ = normals;
@@ -235,7 +237,7 @@ private:
     };
     void resizeKept(Kept& kept, int slots) const {
         if (keepsVelocity_) kept.velocity.resize(vectorSize(slots));
-        if (keepsState_) kept.position.resize(vectorSize(slots));
+        if (keepsState_ || keepsPlace_) kept.position.resize(vectorSize(slots));
         if (keepsState_ && carriesDensity_) kept.density.resize(slots);
     }
     static Particles onHost(int slots, std::vector<int>& id, std::vector<real>& x, std::vector<real>& u, std::vector<real>& a,
@@ -272,7 +274,7 @@ private:
     Device& device_;
     Kind kind_;
     bool carriesVelocity_ = kind_ == Kind::Fluid, hasDensity_ = kind_ == Kind::Fluid, carriesDensity_ = false, shifts_ = false,
-         moves_ = false, keepsVelocity_ = false, keepsState_ = false, stepsLocally_ = false, addsPairs_ = false, hasNormals_ = false, mixture_ = false;
+         moves_ = false, keepsVelocity_ = false, keepsState_ = false, keepsPlace_ = false, stepsLocally_ = false, addsPairs_ = false, hasNormals_ = false, mixture_ = false;
     int slots_ = 0, side_ = 0;
     Buffer<int, Device> id_{device_}, sortedId_{device_}, key_{device_}, order_{device_}, cellStart_{device_};
     Buffer<real, Device> position_{device_}, velocity_{device_}, acceleration_{device_}, addedForce_{device_}, normal_{device_}, normalLength_{device_};

@@ -58,7 +58,7 @@ template <class Device> template <class K> void SimulationOn<Device>::makePlan()
     }
     noteTerms(OptionalTerms{});
     noteTerms(Mixing{});
-    addPass("solid collisions", &S::template onFluid<KeepOutOfSolids>, Initial::No, solids_.count() > 0 ? "" : "there are no solids");
+    addPass("solid collisions", &S::keepOutOfSolids, Initial::No, solids_.count() > 0 ? "" : "there are no solids");
     findLoads_ = loadPass<K>();
     sortsInStep_ = int(std::count_if(plan_.begin(), plan_.end(), [](const Row& row) { return row.run == &S::sort; }));
     for (Row& row : plan_) row.time = timeOf(row.name);

@@ -9,7 +9,7 @@ namespace spindrift::LANES {
 // In two dimensions of a slab one spacing thick.
 struct RigidBody {
     double mass;                         // kg, 0: moves as prescribed
-    Vec3d centre, inverseInertia;        // m, of mass, from its middle; 1/(kg m^2) about that; in its own axes, the principal ones
+    Vec3d centre, inverseInertia[3];     // m, of mass, from its middle; 1/(kg m^2) about that, row by row; in its own axes
     real stiffness, damping, friction;   // of one ball where it touches (floating.h): N/m, N s/m, Coulomb's coefficient
     real deepestBall;                    // m
 };
@@ -38,7 +38,7 @@ struct Turn {
 HD inline Vec3d spinOf(const RigidBody& body, const SolidMotion& m) {
     const Turn turn(m.turn);
     const Vec3d l = turn.in(m.angularMomentum);
-    return turn.out({l.x * body.inverseInertia.x, l.y * body.inverseInertia.y, l.z * body.inverseInertia.z});
+    return turn.out({dot(body.inverseInertia[0], l), dot(body.inverseInertia[1], l), dot(body.inverseInertia[2], l)});
 }
 
 // Where a solid that floats is, `ahead` seconds further on.

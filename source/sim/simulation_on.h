@@ -3,6 +3,7 @@
 #pragma once
 
 #include "device/buffer.h"
+#include "sim/collisions.h"
 #include "sim/constants.h"
 #include "sim/floating.h"
 #include "sim/integrate.h"
@@ -37,8 +38,9 @@ public:
         walls_.upload(wallsAtHome_, {}, {}, fluidCount_);
         solids_.place(scene, wallsAtHome_, solidSizes_, fluidCount_);
         if (wallsMove()) walls_.move();
-        if (solids_.floats()) solids_.reserveLoads(walls_.slots());
+        if (solids_.floats()) solids_.reserveLoads(walls_.slots()), floating_.bounces((fluidCount_ + clusterSize - 1) / clusterSize * clusterSize);
         objects_.place(scene);
+        if (solids_.count() > 0) fluid_.keepPlace();
         clock_.resize(1);
         extremes_.resize(1);
         apply(scene);
@@ -84,9 +86,8 @@ public:
         const Vec3d x = point - toDouble(scene_.domain.min);
         for (size_t s = 0; s < solids.size(); ++s) {
             const Vector<real> arm = Vector<real>{real(x.x), real(x.y), real(x.z)} - solids[s].middle;
-            Vector<real> n{0, 0, 0};
             const Vector<real> own{dot(arm, solids[s].axis[0]), dot(arm, solids[s].axis[1]), dot(arm, solids[s].axis[2])};
-            if (nearest(solids[s], own, n) < scene_.simulation.spacing) return int(s);
+            if (convexOf(scene_.solids[s], scene_.simulation.dimensions).nearest(Vec3d{double(own.x), double(own.y), double(own.z)}).distance < double(scene_.simulation.spacing)) return int(s);
         }
         return -1;
     }
@@ -197,7 +198,7 @@ private:
             constants_.maxStep = min(constants_.maxStep, real(objects_.longestStep()));
             makePlan<K>();
         });
-        fluid_.addForces(pairsOnce() && mixes(scene_), scene_.fluid.surfaceTension > 0);
+        addBuffers();
         fluid_.stepLocally(hasLocalSteps());
         walls_.stepLocally(hasLocalSteps());
         if (hasLocalSteps() && !localSteps_.used()) localSteps_.resize(grid_, real(2 * supportRadius(scene_) * (1 + scene_.compute.skin)));
@@ -358,9 +359,15 @@ private:
         return travel_ < 1e29 && moved >= skin / 2 ? 0 : skin;
     }
     void moveSolids() { placeSolids(0); }
-    void moveSolidsHalfWay() { placeSolids(0.5); }   // the clock is at the step's end
-    void placeSolids(double stepsBack) {
-        solids_.move(clock_.data(), stepsBack, floating_.bodies(), floating_.motions());
+    void moveSolidsHalfWay() { placeSolids(0.5); }   // the clock is at the step's end, what floats at its beginning
+    void keepOutOfSolids() {
+        if (solids_.moves()) solids_.sweep(clock_.data(), floating_.bodies(), floating_.motions());
+        const bool floats = solids_.floats();
+        device_.forEach(fluid_.slots(), KeepOutOfSolids{view(), floats ? floating_.bounces(fluid_.slots()) : Bounces{}});
+        if (floats) floating_.takeMomentum(scene_, view());
+    }
+    void placeSolids(double halfWay) {
+        solids_.move(clock_.data(), halfWay, halfWay, floating_.bodies(), floating_.motions());
         solids_.placeWalls(view());
     }
     void sort() {
@@ -494,9 +501,19 @@ private:
             case ColorBy::Acceleration: return write<AccelerationValue>(v.fluid, out);
             case ColorBy::Id: return write<IdValue>(v.fluid, out);
             case ColorBy::Fluid: return write<FluidValue>(v.fluid, out);
+            case ColorBy::Surface: return writeSurface(out);
         }
         return {0, 0};
     }
+    // Found when somebody looks. (With local steps not where fluid rests: lists are missing there.)
+    Range writeSurface(Vertex* out) {
+        showsSurface_ = true;
+        addBuffers();
+        (this->*pairPass<ComputeNormals>())();
+        onFluid<TagSurface>();
+        return write<SurfaceValue>(fluid_.view(), out);
+    }
+    void addBuffers() { fluid_.addForces(pairsOnce() && mixes(scene_), scene_.fluid.surfaceTension > 0 || showsSurface_); }
     template <class Value> Range write(const Particles& p, Vertex* out) {
         const auto range = device_.template sum<ValueRange>(p.slots, WriteVertices<Value>{p, out});
         if (!(range.high > range.low)) return {range.low, range.high};
@@ -534,6 +551,7 @@ private:
     Buffer<StepState, Device> clock_{device_};
     Buffer<Extremes, Device> extremes_{device_};
     LocalSteps<Device> localSteps_{device_};
+    bool showsSurface_ = false; // somebody has asked
     bool allDue_ = false;       // at this moment: flags are needless then
     Buffer<Vertex, Device> staging_{device_};   // for vertices that the host is to have
     bool measureNext_ = true;

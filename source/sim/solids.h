@@ -1,4 +1,4 @@
-// Solids in the fluid: where they are, what their particles know of them, what keeps fluid out of them, and what fluid does to them.
+// Solids in the fluid: where they are, what their particles know of them, and what fluid does to them.
 #pragma once
 
 #include "core/error.h"
@@ -30,23 +30,24 @@ HD inline KeyedMotion motionAt(const MotionKey* keys, int first, int end, double
 }
 
 // Where a solid is now and how it moves: on straight lines between its keys. It does not accelerate but for an instant at each key. What floats or
-// was dragged is where its motion says, which is still that of the step's beginning where the clock's time is its end.
+// was dragged is where its motion says.
 struct MoveSolids {
     using Index = int;
     SolidState* solids;
     const MotionKey* keys;
     const StepState* state;
     double stepsBack;   // from the clock's time
+    double ahead;       // steps, from the motions
     const RigidBody* bodies;
     const SolidMotion* motions;
     HD void operator()(int i) const {
         SolidState& s = solids[i];
-        if (bodies[i].mass > 0) return placeFloating(s, bodies[i], motions[i], stepsBack * state->dt);
+        if (bodies[i].mass > 0) return placeFloating(s, bodies[i], motions[i], ahead * state->dt);
         const KeyedMotion m = motionAt(keys, s.firstKey, s.endKey, state->time - stepsBack * state->dt);
         s.middle = s.home + Vector<real>{real(m.offset.x), real(m.offset.y), real(m.offset.z)};
         s.velocity = Vector<real>{real(m.velocity.x), real(m.velocity.y), real(m.velocity.z)};
         turn(s, m.turn, m.turnRate);
-        addDragged(s, motions[i], stepsBack * state->dt);
+        addDragged(s, motions[i], ahead * state->dt);
     }
     HD static void addDragged(SolidState& s, const SolidMotion& m, double ahead) {
         const Vec3d place = m.place + ahead * m.velocity;
@@ -63,6 +64,40 @@ struct MoveSolids {
         set(s.axis[k], k, 1), set(s.spin, k, real(rate));
         set(s.axis[y], y, cosine), set(s.axis[y], z, sine);
         set(s.axis[z], y, -sine), set(s.axis[z], z, cosine);
+    }
+};
+
+// A solid's pose becomes the one from which the step's way is seen.
+struct RememberPose {
+    using Index = int;
+    SolidState* solids;
+    HD void operator()(int i) const {
+        SolidState& s = solids[i];
+        s.middleBefore = s.middle;
+        for (int k = 0; k < 3; ++k) s.axisBefore[k] = s.axis[k];
+    }
+};
+// What lies between that and its pose now is a rotation; whole turns are known by its spin alone.
+struct MeasureTurn {
+    using Index = int;
+    SolidState* solids;
+    const StepState* state;
+    HD void operator()(int i) const {
+        SolidState& s = solids[i];
+        auto m = [&](int row, int column) LANE_CALL { return double(dot(s.axisBefore[row], s.axis[column])); };
+        double axis[3] = {m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1)};
+        double length = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
+        const double angle = atan2(length, m(0, 0) + m(1, 1) + m(2, 2) - 1), pi = 3.14159265358979323846;
+        const double asked[3] = {state->dt * double(dot(s.spin, s.axis[0])), state->dt * double(dot(s.spin, s.axis[1])), state->dt * double(dot(s.spin, s.axis[2]))};
+        if (length < 1e-5) {   // by nearly nothing, or by half a turn
+            for (int k = 0; k < 3; ++k) axis[k] = asked[k];
+            length = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
+        }
+        s.turn = {0, 0, 0};
+        if (!(length > 0)) return;
+        const double along = (asked[0] * axis[0] + asked[1] * axis[1] + asked[2] * axis[2]) / length;
+        const double all = (angle + 2 * pi * floor((along - angle) / (2 * pi) + 0.5)) / length;
+        s.turn = {real(all * axis[0]), real(all * axis[1]), real(all * axis[2])};
     }
 };
 
@@ -86,6 +121,26 @@ template <class R> HD inline R nearest(const SolidState& s, Vector<R> p, Vector<
     return most;
 }
 
+// The same for one particle and any solid: of a mesh trilinear between the nodes of its field.
+HD inline real surface(const SolidState& s, Vector<real> p, Vector<real>& n) {
+    if (!s.field) return nearest(s, p, n);
+    const Vector<real> at = s.nodesPerMetre * (p - s.fieldLow);
+    auto cell = [](real a, int nodes) LANE_CALL { return Grid::clamped(a, nodes - 1); };
+    auto share = [](real a, int cell) LANE_CALL { return min(max(a - real(cell), real(0)), real(1)); };
+    const int i = cell(at.x, s.nodes.x), j = cell(at.y, s.nodes.y), k = cell(at.z, s.nodes.z);
+    const real x = share(at.x, i), y = share(at.y, j), z = share(at.z, k);
+    const real* f = s.field + (size_t(k) * size_t(s.nodes.y) + size_t(j)) * size_t(s.nodes.x) + size_t(i);
+    const size_t up = size_t(s.nodes.x), back = up * size_t(s.nodes.y);
+    auto between = [](real a, real b, real share) LANE_CALL { return a + share * (b - a); };
+    const real f00 = between(f[0], f[1], x), f10 = between(f[up], f[up + 1], x), f01 = between(f[back], f[back + 1], x),
+               f11 = between(f[back + up], f[back + up + 1], x), low = between(f00, f10, y), high = between(f01, f11, y);
+    const real alongX = between(between(f[1] - f[0], f[up + 1] - f[up], y), between(f[back + 1] - f[back], f[back + up + 1] - f[back + up], y), z);
+    const Vector<real> slope{alongX, between(f10 - f00, f11 - f01, z), high - low};
+    const real steepness = squareRoot(dot(slope, slope));
+    n = steepness > 0 ? (1 / steepness) * slope : Vector<real>{0, 1, 0};
+    return between(low, high, z);
+}
+
 // What boundary particles have from the start, in the order of their ids. With solids only: the domain's walls are where they are.
 struct WallsAtHome {
     int firstId;
@@ -95,6 +150,12 @@ struct WallsAtHome {
     Vector<real> size;      // m, the domain's
     HD int solidOf(int id) const { return solid ? solid[id - firstId] : -1; }
 };
+
+// The image of x in the domain.
+HD inline Vector<real> intoDomain(const Constants& c, Vector<real> x) {
+    return {x.x - c.period.x * roundDown(x.x * c.inversePeriod.x), x.y - c.period.y * roundDown(x.y * c.inversePeriod.y),
+            x.z - c.period.z * roundDown(x.z * c.inversePeriod.z)};
+}
 
 // Boundary particles go with their solids. Their order is that of the last sort.
 struct PlaceWalls {
@@ -116,18 +177,13 @@ struct PlaceWalls {
     HD void placeOfSolid(int i, int k, const SolidState& s) const {
         const Vector<real> own = load(home.position, k) - s.home, arm = turned(s, own);
         Vector<real> normal{0, 0, 0};
-        const real distance = nearest(s, own, normal);
-        store(v.walls.position, i, wrapped(s.middle + arm));
+        const real distance = surface(s, own, normal);
+        store(v.walls.position, i, intoDomain(v.c, s.middle + arm));
         finish(i, distance * turned(s, normal), s.velocity + cross(s.spin, arm));
     }
     HD void finish(int i, Vector<real> outward, Vector<real> velocity) const {
         if (v.walls.outward.data) store(v.walls.outward, i, outward);
         if (v.walls.ownVelocity.data) store(v.walls.ownVelocity, i, velocity);
-    }
-    HD Vector<real> wrapped(Vector<real> x) const {
-        const Constants& c = v.c;
-        return {x.x - c.period.x * roundDown(x.x * c.inversePeriod.x), x.y - c.period.y * roundDown(x.y * c.inversePeriod.y),
-                x.z - c.period.z * roundDown(x.z * c.inversePeriod.z)};
     }
 };
 
@@ -140,36 +196,6 @@ struct KeepWallMass {
         if (walls.id[i] < 0) return;
         const int k = walls.id[i] - home.firstId;
         if (load(home.mass, k) == 0) store(home.mass, k, load(walls.mass, i));
-    }
-};
-
-// Who got into a solid is put back on its surface, and bounces as from the domain's box. Boundary particles keep fluid out, but not
-// every drop at every speed.
-struct KeepOutOfSolids {
-    using Index = Quad;
-    using R = Real<Quad>;
-    View v;
-    HD void operator()(Quad i) const {
-        Vector<R> x = load(v.fluid.position, i), u = load(v.fluid.velocity, i);
-        for (int s = 0; s < v.solidCount; ++s) leave(v.solids[s], x, u);
-        store(v.fluid.position, i, x);
-        store(v.fluid.velocity, i, u);
-    }
-    HD void leave(const SolidState& s, Vector<R>& x, Vector<R>& u) const {
-        auto wide = [](Vector<real> b) LANE_CALL { return Vector<R>{b.x, b.y, b.z}; };
-        const Vector<R> arm = imageOf(v.c, x - wide(s.middle));
-        Vector<R> n{0, 0, 0};
-        const Vector<R> own{dot(arm, wide(s.axis[0])), dot(arm, wide(s.axis[1])), dot(arm, wide(s.axis[2]))};
-        const R depth = R(0) - nearest(s, own, n);
-        const auto inside = depth > R(0);
-        n = turned(s, n);
-        const Vector<R> relative = u - wide(s.velocity) - cross(wide(s.spin), arm);
-        const R into = min(dot(relative, n), R(0)), one = R(1), zero = R(0);
-        const Vector<R> along = relative - into * n;
-        const R friction = select(inside, R(v.c.friction), zero) * select(into < zero, one, zero);
-        x = addScaled(x, select(inside, depth, zero), n);
-        u = addScaled(u, select(inside, R(-1 - v.c.restitution) * into, zero), n);
-        u = subtractScaled(u, friction, along);
     }
 };
 
@@ -218,20 +244,22 @@ struct SumSolidLoad {
     }
 };
 
+inline Vector<real> toReal(Vec3d a) { return {real(a.x), real(a.y), real(a.z)}; }
+
 // A solid at its place in the scene, before it has moved.
 inline SolidState solidAtHome(const Scene& scene, const Solid& solid) {
-    auto real3 = [](Vec3d a) { return Vector<real>{real(a.x), real(a.y), real(a.z)}; };
     const Convex shape = convexOf(solid, scene.simulation.dimensions);
     Vec3d middle = shape.middle - toDouble(scene.domain.min);
     if (scene.simulation.dimensions == 2) middle.z = 0.5 * double(scene.domain.max.z - scene.domain.min.z);
     SolidState s{};
-    s.home = s.middle = real3(middle);
+    s.home = s.middle = s.middleBefore = toReal(middle);
     s.axis[0] = {1, 0, 0}, s.axis[1] = {0, 1, 0}, s.axis[2] = {0, 0, 1};
+    for (int k = 0; k < 3; ++k) s.axisBefore[k] = s.axis[k];
     s.spinAxis = int(solid.spinAxis);
     s.planes = shape.planes;
-    for (int k = 0; k < shape.planes; ++k) s.normal[k] = real3(shape.normal[k]), s.offset[k] = real(shape.offset[k]);
-    s.radius = real(shape.radius), s.across = real3(shape.across);
-    s.reach = real(reachOf(solid));
+    for (int k = 0; k < shape.planes; ++k) s.normal[k] = toReal(shape.normal[k]), s.offset[k] = real(shape.offset[k]);
+    s.radius = real(shape.radius), s.across = toReal(shape.across);
+    s.reach = solid.shape == Shape::Plane ? real(1e9) : real(reachOf(solid));
     return s;
 }
 
@@ -254,6 +282,7 @@ public:
         count_ = int(states.size()), firstId_ = firstId;
         moves_ = std::any_of(scene.solids.begin(), scene.solids.end(), [](const Solid& s) { return s.moves(); });
         floats_ = std::any_of(scene.solids.begin(), scene.solids.end(), [](const Solid& s) { return s.floats(); });
+        fillFields(scene, states);
         fill(states_, states), fill(keys_, keys);
         const Vec3 size = scene.domain.max - scene.domain.min;
         size_ = {real(size.x), real(size.y), real(size.z)};
@@ -271,8 +300,15 @@ public:
     }
     SolidState* data() { return states_.data(); }
 
-    void move(const StepState* state, double stepsBack, const RigidBody* bodies, const SolidMotion* motions) {
-        device_.forEach(count_, MoveSolids{states_.data(), keys_.data(), state, stepsBack, bodies, motions});
+    void move(const StepState* state, double stepsBack, double ahead, const RigidBody* bodies, const SolidMotion* motions) {
+        device_.forEach(count_, MoveSolids{states_.data(), keys_.data(), state, stepsBack, ahead, bodies, motions});
+    }
+    // To the end of a step, which the solids remember to have begun where they were then.
+    void sweep(const StepState* state, const RigidBody* bodies, const SolidMotion* motions) {
+        move(state, 1, -1, bodies, motions);
+        device_.forEach(count_, RememberPose{states_.data()});
+        move(state, 0, 0, bodies, motions);
+        device_.forEach(count_, MeasureTurn{states_.data(), state});
     }
     void placeWalls(const View& v) { device_.forEach(v.walls.slots, PlaceWalls{v, home()}); }
     void keepMasses(const Particles& walls) { device_.forEach(walls.slots, KeepWallMass{walls, home()}); }
@@ -304,6 +340,22 @@ private:
         buffer.resize(host.size());
         device_.upload(buffer.data(), host.data(), host.size());
     }
+    void fillFields(const Scene& scene, std::vector<SolidState>& states) {
+        std::vector<real> all;
+        std::vector<size_t> begin;
+        for (size_t k = 0; k < states.size(); ++k) {
+            begin.push_back(all.size());
+            const Convex shape = convexOf(scene.solids[k], scene.simulation.dimensions);
+            if (!shape.mesh) continue;
+            const DistanceField field = shape.mesh->field(shape.mesh->fieldSpacing(scene.simulation.spacing / shape.scale));
+            for (float distance : field.distances) all.push_back(real(shape.scale * double(distance)));
+            states[k].nodes = field.nodes;
+            states[k].fieldLow = toReal(shape.scale * field.low), states[k].nodesPerMetre = real(1 / (shape.scale * field.spacing));
+        }
+        fill(fields_, all);
+        for (size_t k = 0; k < states.size(); ++k)
+            if (states[k].nodes.x > 0) states[k].field = fields_.data() + begin[k];
+    }
     void placeParticles(const Scene& scene, const std::vector<Vec3>& walls, const std::vector<int>& sizes) {
         const size_t slots = (walls.size() + clusterSize - 1) / clusterSize * clusterSize;
         std::vector<int> solidOf(slots, -1);
@@ -330,6 +382,7 @@ private:
     Vector<real> size_{};
     Buffer<SolidState, Device> states_{device_};
     Buffer<MotionKey, Device> keys_{device_};
+    Buffer<real, Device> fields_{device_};   // of meshes, one after the other
     Buffer<int, Device> solidOf_{device_};
     Buffer<real, Device> position_{device_}, mass_{device_}, pressureLoad_{device_}, otherLoad_{device_};
 };

@@ -18,14 +18,37 @@ struct ComputeNormals {
     HD void operator()(Group i) const {
         Vector<R> sum{0, 0, 0};
         const Vector<R> x = load(v.fluid.position, i);
-        forNeighbours<Lists::Pruned>(v, v.fluidNearFluid, i, x, [&](const auto& p, Four) LANE_CALL { sum = addScaled(sum, Kernel::g(p.q), p.r); });
-        forNeighbours<Lists::Pruned>(v, v.wallsNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
-            sum = addScaled(sum, load(v.walls.mass, j) * Kernel::g(p.q), p.r);
+        forNeighbours<lists>(v, v.fluidNearFluid, i, x, [&](const auto& p, Four) LANE_CALL { sum = addScaled(sum, Kernel::g(p.q), p.r); });
+        finish(i, x, total(sum));
+    }
+    HD void finish(Group i, Vector<R> x, Vector<R> fluid) const {
+        Vector<R> walls{0, 0, 0};
+        forNeighbours<lists>(v, v.wallsNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
+            walls = addScaled(walls, load(v.walls.mass, j) * Kernel::g(p.q), p.r);
         });
-        const Vector<R> n = R(v.c.normalScale) * total(sum);
+        const Vector<R> n = R(v.c.normalScale) * (fluid + total(walls));
         const R length = squareRoot(dot(n, n)), least = v.c.leastNormal, zero = 0;
         store(v.fluid.normal, i, select(length > least, R(1) / max(length, least), zero) * n);
         store(v.fluid.normalLength, i, length);
+    }
+    // For lists with each pair once (PairSums).
+    static constexpr Lists lists = Lists::Pruned;
+    static constexpr uint8_t dueFrom = NotDue;
+    static constexpr bool opposite = true;
+    struct Nothing {};
+    VectorField field() const { return v.fluid.normal; }
+    template <class I> HD Nothing state(I) const { return {}; }
+    HD Vector<R> of(const Pair<R>& p, Nothing, Nothing) const { return Kernel::g(p.q) * p.r; }
+    HD void finish(Group i) const { finish(i, load(v.fluid.position, i), load(field(), i)); }
+};
+
+// For the eye: 1 where the colour's gradient is more than half of what it is at a flat surface, otherwise 0.
+struct TagSurface {
+    using Index = Quad;
+    View v;
+    HD void operator()(Quad i) const {
+        using R = Real<Quad>;
+        store(v.fluid.normalLength, i, select(load(v.fluid.normalLength, i) > R(real(0.75) / v.c.support), R(1), R(0)));
     }
 };
 

@@ -30,7 +30,7 @@ struct Particles {
     ScalarField densityRate;       // kg/(m^3 s), where density is carried
     VectorField shiftVelocity;     // m/s, where particles are shifted: how much faster than the fluid they move,
     VectorField shiftAcceleration; // m/s^2, and what a particle's velocity changes by for being elsewhere
-    VectorField keptPosition;      // m, what the integrator keeps while forces are evaluated elsewhere
+    VectorField keptPosition;      // m, what the integrator keeps while forces are evaluated elsewhere; with solids, after the drift, where its way began
     VectorField keptVelocity;      // m/s
     ScalarField keptDensity;       // kg/m^3
     ScalarField massRatio;         // of a mixture: rest density / the scene's. Density and what follows from it are those of the same particle of the
@@ -141,6 +141,7 @@ struct Constants {
     Vector<real> slidesBelow, slidesAbove;        // m: boundary particles below or above these slide with
     Vector<real> slideVelocity;                   // m/s
     real solidSpeed;                              // m/s, the most that any solid reaches
+    real gap;                                     // m: who was stopped by a solid is so far off, which is more than rounding
     Vector<real> low, high;                       // m, the box that positions stay in
     Vector<real> period, inversePeriod;           // m, 1/m, of periodic axes; 0 for the others
     bool periodic;                                // any of them
@@ -153,7 +154,7 @@ struct Constants {
     real stirRadius;
 };
 
-// A solid now. Its shape is convex (scene/convex.h), in its own axes and relative to its middle.
+// A solid now. Its shape is convex (scene/convex.h), in its own axes and relative to its middle; that of a mesh is a field of distances in its bounding box.
 struct SolidState {
     Vector<real> home, middle;     // m, relative to the domain's lower corner: at its place in the scene, now
     Vector<real> velocity, spin;   // m/s, rad/s
@@ -168,6 +169,12 @@ struct SolidState {
     real reach;                    // m, from its middle to its farthest point
     Vector<real> centreOfMass;     // m, of one that floats
     real speed;                    // m/s, the most of its points, of one that floats or is dragged; otherwise 0: the scene knows it
+    Vector<real> middleBefore, axisBefore[3];   // where the step began, for collisions,
+    Vector<real> turn;             // rad, and how it has turned since, in its own axes
+    const real* field;             // m from the surface at the nodes of a lattice, x first; null: there is none
+    Vector<real> fieldLow;         // m, its first node
+    real nodesPerMetre;
+    Int3 nodes;
 };
 
 struct View {

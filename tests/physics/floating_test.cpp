@@ -89,10 +89,10 @@ TEST(Floating, TopPrecesses) {
     const Mass mass = massOf(scene, scene.solids[0]);
     auto simulation = makeSimulation(scene);
     RunState state = simulation->state();
-    const Vec3d momentum = mass.inertia.z * Vec3d{0, 0, 8} + mass.inertia.x * Vec3d{2, 0, 0};
+    const Vec3d momentum = mass.inertia[2].z * Vec3d{0, 0, 8} + mass.inertia[0].x * Vec3d{2, 0, 0};
     state.solids[0].angularMomentum = momentum;
     simulation->restart(state);
-    const double rate = length(momentum) / mass.inertia.x, turn = 0.5 * std::numbers::pi;   // a quarter of a precession
+    const double rate = length(momentum) / mass.inertia[0].x, turn = 0.5 * std::numbers::pi;   // a quarter of a precession
     const SolidMeasurement s = solidAfter(*simulation, int(std::round(turn / rate / 0.0005)));
     const Vec3d along = (1 / length(momentum)) * momentum, axis{0, 0, 1};
     const double share = dot(axis, along);
@@ -101,7 +101,7 @@ TEST(Floating, TopPrecesses) {
     const double w = now.turn[0], x = now.turn[1], y = now.turn[2], z = now.turn[3];
     EXPECT_LT(length(Vec3d{2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)} - expected), 0.01);
     EXPECT_LT(length(now.angularMomentum - momentum), 1e-9);
-    EXPECT_NEAR(dot(s.spin, momentum), mass.inertia.z * 64 + mass.inertia.x * 4, 0.01 * mass.inertia.z * 64);   // twice its energy
+    EXPECT_NEAR(dot(s.spin, momentum), mass.inertia[2].z * 64 + mass.inertia[0].x * 4, 0.01 * mass.inertia[2].z * 64);   // twice its energy
 }
 
 // A block slides to a halt after v^2 / (2 mu g), and stays upright and on the floor.
@@ -163,14 +163,14 @@ TEST(Floating, MassesAreThoseOfTheShapes) {
     };
     Mass m = massOfSolid(R"({"shape":"block","min":[0,0,0],"max":[1,2,3],"density":10})");
     EXPECT_NEAR(m.mass, 60, 1e-9);
-    EXPECT_NEAR(m.inertia.x, 60.0 / 12 * (4 + 9), 1e-9);
-    EXPECT_NEAR(m.inertia.z, 60.0 / 12 * (1 + 4), 1e-9);
+    EXPECT_NEAR(m.inertia[0].x, 60.0 / 12 * (4 + 9), 1e-9);
+    EXPECT_NEAR(m.inertia[2].z, 60.0 / 12 * (1 + 4), 1e-9);
     m = massOfSolid(R"({"shape":"sphere","radius":0.5,"density":10})");
     EXPECT_NEAR(m.mass, 10 * std::numbers::pi / 6, 1e-6);
-    EXPECT_NEAR(m.inertia.y, 0.4 * m.mass * 0.25, 1e-6);
+    EXPECT_NEAR(m.inertia[1].y, 0.4 * m.mass * 0.25, 1e-6);
     m = massOfSolid(R"({"shape":"cylinder","axis":"x","radius":0.5,"height":2,"density":10})");
-    EXPECT_NEAR(m.inertia.x, 0.5 * m.mass * 0.25, 1e-6);
-    EXPECT_NEAR(m.inertia.y, m.mass * (3 * 0.25 + 4) / 12, 1e-6);
+    EXPECT_NEAR(m.inertia[0].x, 0.5 * m.mass * 0.25, 1e-6);
+    EXPECT_NEAR(m.inertia[1].y, m.mass * (3 * 0.25 + 4) / 12, 1e-6);
     // A wedge by adding up small blocks.
     m = massOfSolid(R"({"shape":"wedge","min":[0,0,0],"max":[2,1,3],"density":1})");
     double mass = 0, moment = 0, xx = 0, yy = 0;
@@ -184,10 +184,10 @@ TEST(Floating, MassesAreThoseOfTheShapes) {
         }
     EXPECT_NEAR(m.mass, mass, 0.01);
     EXPECT_NEAR(0.5 + m.centre.y, moment / mass, 0.003);
-    EXPECT_NEAR(m.inertia.z, xx + yy - moment * moment / mass, 0.005);
+    EXPECT_NEAR(m.inertia[2].z, xx + yy - moment * moment / mass, 0.005);
     m = massOfSolid(R"({"shape":"sphere","radius":0.5,"density":1000})", 2);
     EXPECT_NEAR(m.mass, 1000 * std::numbers::pi * 0.25 * 0.05, 1e-3);
-    EXPECT_NEAR(m.inertia.z, 0.5 * m.mass * 0.25, 1e-4);
+    EXPECT_NEAR(m.inertia[2].z, 0.5 * m.mass * 0.25, 1e-4);
 }
 
 }  // namespace

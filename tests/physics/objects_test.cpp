@@ -1,4 +1,5 @@
 // Elastic objects: they bend as beams do, break when they should, keep momentum, and fluid and objects keep out of each other's way.
+#include "physics/bonded_reference.h"
 #include "scene/json.h"
 #include "scene/sample_object.h"
 #include "sim/simulation.h"
@@ -128,6 +129,48 @@ TEST(Objects, KeepOutOfEachOther) {
     EXPECT_LT(left / n, 0.3);
     EXPECT_GT(right / n, 0.6);
     EXPECT_LT(length(momentumOf(scene, *simulation) - before) / length(before), 1e-4);
+}
+
+// The built-in bonds and the plain ones, which drive from outside: a block that is held at one end falls, swings, and is hit by water.
+TEST(Objects, BondsAgreeWithPlainOnesThatDriveFromOutside) {
+    Scene scene = sceneOf({"domain.max=1,1,0.4", R"(fluid.bodies=[{"shape":"block","min":[0.5,0.65,0.1],"max":[0.7,0.8,0.3],"velocity":[0,-1,0]}])",
+                           R"(objects=[{"shape":"block","min":[0.2,0.5,0.1],"max":[0.8,0.6,0.3],"youngs_modulus":2e5}])",
+                           R"(grips=[{"min":[0.1,0.4,0],"max":[0.201,0.7,0.4]}])", "compute.precision=double", "time.mode=fixed", "time.step=0.0001"});
+    auto built = makeSimulation(scene), driven = makeSimulation(scene);
+    BondedReference reference(scene, 0.0002, 2);
+    driven->drive(&reference);
+    for (Simulation* s : {built.get(), driven.get()}) s->step(3000);
+    const ObjectSample sample = sampleObjects(scene);
+    const ObjectState a = built->state().objects, b = driven->state().objects;
+    double moved = 0, apart = 0;
+    for (size_t i = 0; i < sample.size(); ++i) {
+        moved = std::max<double>(moved, length(a.positions[i] - sample.positions[i]));
+        apart = std::max<double>(apart, length(a.positions[i] - b.positions[i]));
+    }
+    EXPECT_GT(moved, 0.1);
+    EXPECT_LT(apart, 0.02 * moved);
+    // Given back, they move by themselves again.
+    driven->drive(nullptr);
+    driven->step(100);
+    EXPECT_GT(length(driven->state().objects.positions.back() - b.positions.back()), 1e-4);
+}
+
+// A run that goes on from a state does so with the same bits, torn or not.
+TEST(Objects, RunsGoOnFromTheirStates) {
+    Scene scene = sceneOf({"domain.max=1,1,0.4", R"(fluid.bodies=[{"shape":"block","min":[0.3,0.6,0.1],"max":[0.7,0.8,0.3]}])",
+                           R"(objects=[{"shape":"sheet","min":[0.2,0.5,0.05],"max":[0.8,0.5,0.35],"youngs_modulus":1e6,"breaking_strain":0.05}])",
+                           R"(grips=[{"min":[0.1,0.4,0],"max":[0.201,0.7,0.4]},{"min":[0.799,0.4,0],"max":[0.9,0.7,0.4]}])",
+                           R"(cuts=[{"time":0.1,"min":[0.5,0,0],"max":[0.53,1,0.2]}])"});
+    auto first = makeSimulation(scene);
+    first->step(400);
+    const RunState middle = first->state();
+    EXPECT_GT(std::count(middle.objects.broken.begin(), middle.objects.broken.end(), 1), 0);
+    first->restart(middle);
+    auto second = makeSimulation(scene, middle);
+    for (Simulation* s : {first.get(), second.get()}) s->step(200);
+    const ObjectState a = first->state().objects, b = second->state().objects;
+    EXPECT_EQ(a.broken, b.broken);
+    for (size_t i = 0; i < a.positions.size(); ++i) ASSERT_EQ(a.positions[i], b.positions[i]) << i;
 }
 
 }  // namespace

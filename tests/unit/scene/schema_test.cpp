@@ -59,7 +59,7 @@ TEST(Schema, EveryFieldOfASceneHasItsLine) {
                        1 /* probes */;
     EXPECT_EQ(knobCount(scene), fields);
 
-    EXPECT_EQ(memberKnobs<Body>(), fieldCount<Form>() + fieldCount<Body>() - 1 /* the base */);
+    EXPECT_EQ(memberKnobs<Body>(), fieldCount<Form>() + fieldCount<Body>() - 4 /* the base, and normal, scale and offset of solids */);
     EXPECT_EQ(memberKnobs<Solid>(), fieldCount<Form>() + fieldCount<Solid>() - 1);
     EXPECT_EQ(memberKnobs<Probe>(), fieldCount<Probe>());
 }

@@ -21,6 +21,7 @@ const Expected Scenes[] = {
     {"still_pool", Splash, 250},
     {"wave_maker", WithMovingSolids, 290},
     {"mixer", WithMovingSolids, 270},
+    {"bowl", WithMovingSolids, 270},
     {"oil_and_water", "sort neighbours density walls forces extremes time-step integrate viscosities-of-a-mixture", 250},
     {"drops", "sort neighbours equation-of-state forces normals surface-tension extremes time-step kick transport drift laminar-viscosity "
               "artificial-viscosity", 500},

@@ -1,0 +1,71 @@
+#pragma once
+// Surfaces for tests, as the text of OBJ files.
+#include "core/vec.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <numbers>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace spindrift {
+
+struct Surface {
+    std::vector<Vec3d> vertices;
+    std::vector<std::vector<int>> faces;   // from 0 on, against the clock seen from outside
+    std::string text() const {
+        std::ostringstream out;
+        out.precision(9);
+        for (const Vec3d& p : vertices) out << "v " << p.x << " " << p.y << " " << p.z << "\n";
+        for (const auto& face : faces) {
+            out << "f";
+            for (int v : face) out << " " << v + 1;
+            out << "\n";
+        }
+        return out.str();
+    }
+    // The path of a file with it.
+    std::string write(const std::string& path) const {
+        std::ofstream(path) << text();
+        return path;
+    }
+};
+
+inline Surface boxSurface(Vec3d low, Vec3d high) {
+    Surface s;
+    for (int k = 0; k < 8; ++k) s.vertices.push_back({k & 1 ? high.x : low.x, k & 2 ? high.y : low.y, k & 4 ? high.z : low.z});
+    s.faces = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+    return s;
+}
+
+// An icosahedron whose triangles are quartered `times` times and pushed out to a sphere.
+inline Surface sphereSurface(Vec3d center, double radius, int times) {
+    const double g = std::numbers::phi;
+    Surface s;
+    s.vertices = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g}, {0, -1, -g}, {0, 1, -g}, {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
+    s.faces = {{0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
+               {3, 9, 4}, {3, 4, 2}, {3, 2, 6}, {3, 6, 8}, {3, 8, 9}, {4, 9, 5}, {2, 4, 11}, {6, 2, 10}, {8, 6, 7}, {9, 8, 1}};
+    for (; times > 0; --times) {
+        std::map<std::pair<int, int>, int> middles;
+        auto middle = [&](int a, int b) {
+            const auto [at, isNew] = middles.try_emplace({std::min(a, b), std::max(a, b)}, int(s.vertices.size()));
+            if (isNew) s.vertices.push_back(0.5 * (s.vertices[size_t(a)] + s.vertices[size_t(b)]));
+            return at->second;
+        };
+        std::vector<std::vector<int>> quarters;
+        for (const auto& f : s.faces) {
+            const int ab = middle(f[0], f[1]), bc = middle(f[1], f[2]), ca = middle(f[2], f[0]);
+            for (const std::vector<int>& q : {std::vector<int>{f[0], ab, ca}, {ab, f[1], bc}, {ca, bc, f[2]}, {ab, bc, ca}}) quarters.push_back(q);
+        }
+        s.faces = quarters;
+        for (Vec3d& p : s.vertices) p = normalized(p);
+    }
+    for (Vec3d& p : s.vertices) p = center + radius * normalized(p);
+    return s;
+}
+
+}  // namespace spindrift
