@@ -283,6 +283,53 @@ bool turnFluids(Scene& s, uint64_t seed) {
     return f.buoyancy == 0 && f.airDensity == 0 && f.surfaceTension == 0 && s.simulation.pressureForm == PressureForm::Squares;
 }
 
+// One in four has solids that float, one in four elastic objects, where that makes sense. Whether there are any: they have energy that nobody counts.
+bool turnThings(Scene& s, uint64_t seed) {
+    Dice dice{std::mt19937_64(seed + 0x2545f4914f6cdd1du)};
+    const Scene without = s;
+    const Vec3 size = s.domain.max - s.domain.min;
+    const float dx = s.simulation.spacing, fall = std::sqrt(9.81f * length(size));   // m/s
+    const bool flat = s.simulation.dimensions == 2;
+    auto place = [&](Vec3& low, Vec3& high) {
+        for (int k = 0; k < 3; ++k) {
+            const float extent = std::min(dx * dice.between(2, 10), 0.6f * size[k]);
+            low[k] = s.domain.min[k] + dice.between(0, 1) * (size[k] - extent), high[k] = low[k] + extent;
+        }
+    };
+    auto speed = [&] { return Vec3{dice.between(-1, 1) * fall, dice.between(-1, 1) * fall, flat ? 0 : dice.between(-1, 1) * fall}; };
+    for (int n = dice.oneIn(4) ? 1 + int(dice.random() % 3) : 0; n > 0; --n) {
+        Solid solid;
+        solid.shape = Shape(dice.random() % 4);
+        place(solid.min, solid.max);
+        solid.center = 0.5f * (solid.min + solid.max), solid.radius = 0.5f * (solid.max.x - solid.min.x), solid.height = solid.max.y - solid.min.y;
+        solid.axis = flat ? Axis::Z : Axis(dice.random() % 3);
+        solid.density = s.fluid.restDensity * dice.logarithmic(0.1, 10), solid.friction = dice.between(0, 1);
+        if (dice.oneIn(2)) solid.velocity = speed(), solid.spin = dice.between(-360, 360) * fall / length(size);
+        s.solids.push_back(solid);
+    }
+    for (int n = dice.oneIn(4) ? 1 + int(dice.random() % 2) : 0; n > 0; --n) {
+        Object object;
+        object.shape = ObjectShape(dice.random() % 3);
+        place(object.min, object.max);
+        if (object.shape == ObjectShape::Sheet) object.max.y = object.min.y;
+        object.center = 0.5f * (object.min + object.max), object.radius = 0.5f * (object.max.x - object.min.x), object.height = object.max.z - object.min.z;
+        object.axis = flat ? Axis::Z : Axis(dice.random() % 3);
+        object.spacing = dx * dice.between(0.5, 2), object.thickness = dx * dice.logarithmic(0.1, 2);
+        object.density = s.fluid.restDensity * dice.logarithmic(0.2, 5);
+        object.youngsModulus = object.density * fall * fall * dice.logarithmic(1, 1000);
+        object.damping = dice.between(0, 0.5), object.breakingStrain = dice.oneIn(2) ? dice.logarithmic(0.01, 1) : 0;
+        if (dice.oneIn(2)) object.velocity = speed();
+        if (dice.oneIn(3)) s.grips.push_back({object.min, object.center, dice.oneIn(2) ? 0.2f * speed() : Vec3{}, {}});
+        s.objects.push_back(object);
+    }
+    if (s.solids.empty() && s.objects.empty()) return false;
+    try {
+        checkScene(s, s.name);
+        return true;
+    } catch (const Error&) { s = without; }
+    return false;
+}
+
 }  // namespace
 
 StressCase randomCase(uint64_t seed) {
@@ -333,7 +380,7 @@ StressCase randomCase(uint64_t seed) {
         }
         turnRareKnobs(s, seed);
         turnLocal(s, seed);
-        const bool keepsEnergy = turnFluids(s, seed);
+        const bool fluidsKeepEnergy = turnFluids(s, seed), keepsEnergy = !turnThings(s, seed) && fluidsKeepEnergy;
         try {
             checkScene(s, s.name);
         } catch (const Error&) { continue; }   // makes no sense: the next throw of the dice

@@ -36,7 +36,7 @@ struct ComputeNormals {
     static constexpr uint8_t dueFrom = NotDue;
     static constexpr bool opposite = true;
     struct Nothing {};
-    VectorField field() const { return v.fluid.normal; }
+    HD VectorField field() const { return v.fluid.normal; }
     template <class I> HD Nothing state(I) const { return {}; }
     HD Vector<R> of(const Pair<R>& p, Nothing, Nothing) const { return Kernel::g(p.q) * p.r; }
     HD void finish(Group i) const { finish(i, load(v.fluid.position, i), load(field(), i)); }

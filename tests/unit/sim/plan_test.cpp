@@ -22,6 +22,10 @@ const Expected Scenes[] = {
     {"wave_maker", WithMovingSolids, 290},
     {"mixer", WithMovingSolids, 270},
     {"bowl", WithMovingSolids, 270},
+    {"floating", "solids sort neighbours density walls forces solid-forces extremes time-step floating-solids integrate laminar-viscosity artificial-viscosity "
+                 "solid-collisions", 300},
+    {"artery", "solids sort neighbours density walls forces contact extremes time-step objects integrate laminar-viscosity artificial-viscosity "
+               "solid-collisions", 400},
     {"oil_and_water", "sort neighbours density walls forces extremes time-step integrate viscosities-of-a-mixture", 250},
     {"drops", "sort neighbours equation-of-state forces normals surface-tension extremes time-step kick transport drift laminar-viscosity "
               "artificial-viscosity", 500},
