@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -74,7 +75,10 @@ TEST(Collisions, ThinPlatesStopAllFluidWhereItCame) {
                     const Formulation f = scene.simulation.formulation;
                     const int steps = f == Formulation::Wcsph ? 12 : f == Formulation::DeltaSph ? 2 : 1;
                     const double tilt = plate.find("plane") == std::string::npos ? 0 : 0.1;
-                    expectAll(plate + formulation + integrator, scene, steps, [&](const Particle& p) { return p.position.y + tilt * (p.position.x - 0.5) > 0.4; });
+                    expectAll(plate + formulation + integrator, scene, steps, [&](const Particle& p) {
+                        const Vec3d x = p.position;
+                        return x.y + tilt * (x.x - 0.5) > 0.4 && std::min({x.x, x.y, x.z}) >= 0 && std::max({x.x, x.y, x.z}) <= 1;   // in the box, too
+                    });
                 }
 }
 
@@ -150,6 +154,9 @@ TEST(Collisions, PaddlesThatTurnTakeAlongWhatTheyMeet) {
                 if (first > turn) continue;
                 ++swept;
                 ASSERT_NEAR(height, angle > 0 ? 0.01 : -0.01, 0.001) << a.x << " " << a.y;
+                // Along it they slide as if nothing were there.
+                const double along = std::cos(turn) * b.x + std::sin(turn) * b.y;
+                ASSERT_TRUE(degrees != 60 || std::abs(along - r * std::cos(angle - turn)) < 0.001) << a.x << " " << a.y;
             }
             EXPECT_GT(swept, 300);
         }
