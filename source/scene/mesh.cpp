@@ -70,9 +70,9 @@ void requireClosed(const std::string& name, const std::vector<Vec3d>& vertices, 
     });
     if (wrong == 0) return;
     const std::string edge = shown(vertices[size_t(edges[first].low)]) + " to " + shown(vertices[size_t(edges[first].high)]);
-    const std::string why = uses == 2 ? "its two triangles face opposite sides" : uses == 1 ? "one triangle has it" : fmt::format("{} triangles have it", uses);
-    refuse(name, fmt::format("is not closed: at the edge from {} {}, two that face the same side must; {} such edge{}. Close the surface where it "
-                             "was made", edge, why, wrong, wrong == 1 ? "" : "s"));
+    const std::string owners = uses == 2 ? "two triangles that face opposite sides" : uses == 1 ? "one triangle" : fmt::format("{} triangles", uses);
+    refuse(name, fmt::format("is not closed: the edge from {} belongs to {}, each must to two that face the same side ({} such edge{}); close the "
+                             "surface where it was made", edge, owners, wrong, wrong == 1 ? "" : "s"));
 }
 
 double boxDistance2(Vec3d low, Vec3d high, Vec3d p) {

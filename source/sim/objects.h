@@ -385,14 +385,14 @@ private:
         double fastest = 0;
         for (size_t i = 0; i < sample_.size(); ++i) {
             const double m = sample_.masses[i], share = scene.objects[size_t(sample_.objects[i])].damping;
-            double k = 4 * contact, c = 4 * 2 * (scene.contact.damping + scene.contact.shear) * std::sqrt(contact * m);
+            double k = 6 * contact, c = 6 * double(law_.damping + law_.shear);
             for (int b = firstBondOnHost_[i]; b < firstBondOnHost_[i + 1]; ++b) {
                 const double spring = whole_[size_t(b)].stiffness;
                 k += 2 * spring, c += 2 * 2 * share * std::sqrt(spring * m / 2);
             }
             fastest = std::max(fastest, std::sqrt(k / m) + c / m);
         }
-        return 1 / fastest;
+        return 1.5 / fastest;   // it is stable to 2
     }
     int padded() const { return (count() + clusterSize - 1) / clusterSize * clusterSize; }
     template <class V> void fillVectors(Buffer<real, Device>& buffer, const std::vector<V>& values) {

@@ -106,10 +106,10 @@ TEST(Meshes, MistakesAreNamed) {
         {"v 0 0 0\n", "has no faces"},
         {"v 0 0 0\nf 1 1 1\n", "has no faces"},
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 3 2 1\n", "encloses no volume"},
-        {open.text(), "is not closed: at the edge from (0, 0, 1) to (1, 0, 1) one triangle has it"},
+        {open.text(), "is not closed: the edge from (0, 0, 1) to (1, 0, 1) belongs to one triangle"},
         {open.text(), "4 such edges"},
-        {turned.text(), "its two triangles face opposite sides"},
-        {doubled.text(), "3 triangles have it"},
+        {turned.text(), "belongs to two triangles that face opposite sides"},
+        {doubled.text(), "belongs to 3 triangles"},
     };
     for (const auto& [text, words] : mistakes) EXPECT_NE(complaint(text).find(words), std::string::npos) << complaint(text);
     EXPECT_THROW(readMesh("/nowhere/a.obj"), Error);
