@@ -322,10 +322,9 @@ void checkObject(const Scene& scene, size_t index) {
         if (high[k] > low[k] && high[k] - low[k] < 0.99f * spacing)
             refuse(path, fmt::format("{:.4g} m along {} is less than the {} m between its particles; thicken it or lower spacing", high[k] - low[k], "xyz"[k], spacing));
     }
-    const double reach = double(scene.contact.influence) * 0.5 * (double(scene.simulation.spacing) + spacing);
-    if (reach > supportRadius(scene))
-        refuse(path + ".spacing", fmt::format("contacts would reach {:.4g} m, further than the support radius {:.4g} m; lower it or contact.influence", reach,
-                                              supportRadius(scene)));
+    const double reach = double(scene.contact.influence) * 0.5 * (double(scene.simulation.spacing) + spacing), most = 4 * double(supportRadius(scene));
+    if (reach > most)
+        refuse(path + ".spacing", fmt::format("contacts would reach {:.4g} m, more than the four support radii, {:.4g} m, of who is looked at; lower it", reach, most));
 }
 
 void checkObjects(const Scene& scene) {

@@ -49,7 +49,7 @@ TEST(Floating, FluidAndSolidKeepTheirMomentum) {
     for (const char* formulation : {"wcsph", "delta_sph"})
         for (const char* integrator : {"symplectic_euler", "predictor_corrector"}) {
             const Scene scene = sceneOf({std::string("simulation.formulation=") + formulation, std::string("time.integrator=") + integrator, "simulation.gravity=0,0,0",
-                                         "walls.kind=reflect", "time.mode=cfl", "domain.max=8,4,4", "fluid.viscosity=1", "compute.precision=double",
+                                         "walls.kind=reflect", "time.mode=cfl", "domain.min=-1,-1,-1", "domain.max=6,5,5", "fluid.viscosity=1", "compute.precision=double",
                                          R"(fluid.bodies=[{"shape":"block","min":[1.5,1.8,1.8],"max":[1.9,2.2,2.2],"velocity":[1,0,0]}])",
                                          R"(solids=[{"shape":"block","min":[2,1.9,1.7],"max":[2.3,2.4,2.2],"density":700}])"});
             auto simulation = makeSimulation(scene);

@@ -145,6 +145,24 @@ TEST_F(WindowTest, DoubleClickMarksAParticleAndCtrlDragStirs) {
     EXPECT_TRUE(window.running());
 }
 
+// A ball in the middle of an otherwise calm scene goes with the mouse, one that stands still and one that floats; beside it there is nothing to be dragged.
+TEST_F(WindowTest, CtrlDragPullsAnObstacle) {
+    for (const char* density : {"0", "500"}) {
+        SCOPED_TRACE(density);
+        Window window(*screen, {"test/dam_break_small", "--size", "800x600", "--color", "plain", "--set", "simulation.gravity=0,0,0", "--set", "domain.max=1,1,1", "--set",
+                                "fluid.bodies=[{\"shape\":\"block\",\"min\":[0,0,0],\"max\":[1,0.1,1]}]", "--set",
+                                std::string("solids=[{\"shape\":\"sphere\",\"center\":[0.5,0.5,0.5],\"radius\":0.12,\"density\":") + density + "}]"});
+        window.act("key Tab");   // the picture's middle is the window's
+        const Image before = settled(window);
+        window.act("keydown ctrl");
+        window.drag(1, 400, 120, 480, 120);
+        window.act("keyup ctrl");
+        EXPECT_LT(difference(before, settled(window)), seen) << "nothing is there";
+        window.act("keydown ctrl " + window.at(400, 300) + "mousedown 1 sleep 0.4 " + window.at(450, 300) + "sleep 0.2 " + window.at(500, 300) + "sleep 2 mouseup 1 keyup ctrl");
+        EXPECT_GT(difference(before, window.screenshot()), 0.01) << "the ball has gone";
+    }
+}
+
 TEST_F(WindowTest, CtrlSSavesACheckpoint) {
     Window window = paused();
     const Image before = settled(window);

@@ -90,7 +90,7 @@ TEST(ObjectChecks, SayWhatIsWrong) {
     EXPECT_NE(refusal(R"([{"shape":"sheet","min":[0.1,0.6,0.1],"max":[0.3,0.8,0.3]}])").find("flat along one axis"), std::string::npos);
     EXPECT_NE(refusal(R"([{"shape":"block","min":[0.1,0.6,0.1],"max":[0.3,1.8,0.3]}])").find("out of the domain"), std::string::npos);
     EXPECT_NE(refusal(R"([{"shape":"block","min":[0.1,0.6,0.1],"max":[0.3,0.61,0.3]}])").find("thicken it"), std::string::npos);
-    EXPECT_NE(refusal(R"([{"shape":"block","min":[0.1,0.6,0.1],"max":[0.5,0.9,0.5],"spacing":0.2}])").find("support radius"), std::string::npos);
+    EXPECT_NE(refusal(R"([{"shape":"block","min":[0.1,0.1,0.1],"max":[0.9,0.9,0.9],"spacing":0.7}])").find("support radii"), std::string::npos);
     EXPECT_NE(refusal(R"([{"shape":"tube","radius":0.1,"thickness":0.3}])").find("no room"), std::string::npos);
     EXPECT_NE(refusal("[]", {R"(cuts=[{"time":1}])"}).find("no objects to cut"), std::string::npos);
     EXPECT_NE(refusal("[]", {R"(grips=[{"min":[0,0,0]}])"}).find("no objects to hold"), std::string::npos);
