@@ -300,7 +300,13 @@ void checkObject(const Scene& scene, size_t index) {
         refuse(path + ".spacing", fmt::format("{:.4g} m is less than a twentieth of simulation.spacing; raise it, or 0 for the same", spacing));
     Vec3 low = o.min, high = o.max;
     int sides = 0;
-    if (o.shape == ObjectShape::Tube) {
+    if (o.shape == ObjectShape::Shell) {
+        if (flat) refuse(path + ".shape", "a shell has three dimensions; use another shape, or simulation.dimensions 3");
+        try {
+            const auto mesh = readMesh(o.path);
+            low = o.offset + toFloat(double(o.scale) * mesh->low()), high = o.offset + toFloat(double(o.scale) * mesh->high());
+        } catch (const Error& error) { refuse(path + ".path", error.what()); }
+    } else if (o.shape == ObjectShape::Tube) {
         const float out = o.radius + o.thickness / 2;
         for (int k = 0; k < 3; ++k) {
             const float half = !flat && k == int(o.axis) ? o.height / 2 : out;

@@ -460,8 +460,9 @@ double soundSpeed(const Scene& s, const FluidExtent& fluid) {
         for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], middle[k]), high[k] = std::max(high[k], middle[k]);
     }
     for (const Object& o : s.objects) {
-        const bool tube = o.shape == ObjectShape::Tube;
-        const Vec3d middle = tube ? toDouble(o.center) : 0.5 * (toDouble(o.min) + toDouble(o.max)), at = middle - toDouble(s.domain.min);
+        const bool cornered = o.shape == ObjectShape::Block || o.shape == ObjectShape::Sheet;
+        const Vec3d middle = cornered ? 0.5 * (toDouble(o.min) + toDouble(o.max)) : toDouble(o.shape == ObjectShape::Tube ? o.center : o.offset);
+        const Vec3d at = middle - toDouble(s.domain.min);
         for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], at[k]), high[k] = std::max(high[k], at[k]);
     }
     double fall = 0;   // m^2/s^2

@@ -1,5 +1,7 @@
 #include "scene/sample_object.h"
 
+#include "scene/mesh.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -72,17 +74,27 @@ Vec3d placeOf(const Scene& scene, const Object& o, const Nodes& nodes, int64_t i
     return x;
 }
 
+// An object under way: springs between its particles, those of the same pair added up.
+struct Springs {
+    ObjectSample& out;
+    int first;   // of its particles
+    std::map<std::pair<int, int>, double> stiffness{};
+
+    Vec3d at(int node) const { return toDouble(out.positions[size_t(first + node)]); }
+    void join(int a, int b, double k) { stiffness[{std::min(a, b), std::max(a, b)}] += k; }
+    void addMass(int node, double mass) { out.masses[size_t(first + node)] += float(mass); }
+    void bond() {
+        for (const auto& [pair, k] : stiffness)
+            out.bonds.push_back({first + pair.first, first + pair.second, float(length(at(pair.first) - at(pair.second))), float(k)});
+    }
+};
+
 // Adds up the springs of cells and the mass at their corners.
 struct Cells {
     const Scene& scene;
     const Object& object;
     const Nodes& nodes;
-    ObjectSample& out;
-    int first;
-    std::map<std::pair<int, int>, double> springs{};
-
-    Vec3d at(int node) const { return toDouble(out.positions[size_t(first + node)]); }
-    void join(int a, int b, double stiffness) { springs[{std::min(a, b), std::max(a, b)}] += stiffness; }
+    Springs& springs;
 
     void add(int64_t i, int64_t j, int64_t k) {
         std::vector<int> directions;
@@ -95,50 +107,92 @@ struct Cells {
             return nodes.index(c[0], c[1], c[2]);
         };
         double volume = 1;
-        for (int e = 0; e < extents; ++e) volume *= length(at(corner(1 << e)) - at(corner(0)));
+        for (int e = 0; e < extents; ++e) volume *= length(springs.at(corner(1 << e)) - springs.at(corner(0)));
         // What is not a direction of the lattice is as thick as the wall, and in two dimensions as the slab.
         const double slab = scene.simulation.spacing, rest = scene.simulation.dimensions == 3 ? object.thickness : extents == 2 ? slab : object.thickness * slab;
         const double full = extents == 3 ? volume : volume * rest, a = std::pow(volume, 1.0 / extents);
-        for (int c = 0; c < corners; ++c) out.masses[size_t(first + corner(c))] += float(object.density * full / corners);
+        for (int c = 0; c < corners; ++c) springs.addMass(corner(c), object.density * full / corners);
         const double E = object.youngsModulus;
         const double edge = extents == 3 ? 0.1 * E * a : extents == 2 ? 0.375 * E * rest : E * rest / a;
         const double diagonal = extents == 3 ? 0.2 * E * a : 0.375 * E * rest;
         for (int c = 0; c < corners; ++c)
             for (int d = c + 1; d < corners; ++d) {
                 const int apart = __builtin_popcount(unsigned(c ^ d));
-                if (apart <= 2) join(corner(c), corner(d), apart == 1 ? edge : diagonal);
+                if (apart <= 2) springs.join(corner(c), corner(d), apart == 1 ? edge : diagonal);
             }
     }
 };
 
-void sampleObject(const Scene& scene, int number, ObjectSample& out) {
+// x in world coordinates.
+void addParticle(const Scene& scene, int number, Vec3d x, bool atSurface, ObjectSample& out) {
+    const auto holds = [&](const Grip& g) {
+        for (int d = 0; d < scene.simulation.dimensions; ++d)
+            if (x[d] < double(g.min[d]) || x[d] > double(g.max[d])) return false;
+        return true;
+    };
+    const auto grip = std::find_if(scene.grips.begin(), scene.grips.end(), holds);
+    out.positions.push_back(toFloat(x - toDouble(scene.domain.min)));
+    out.grips.push_back(grip == scene.grips.end() ? -1 : int(grip - scene.grips.begin()));
+    out.atSurface.push_back(atSurface);
+    out.masses.push_back(0);
+    out.radii.push_back(0.5f * spacingOf(scene, scene.objects[size_t(number)]));
+    out.objects.push_back(number);
+}
+
+void sampleLattice(const Scene& scene, int number, ObjectSample& out) {
     const Object& o = scene.objects[size_t(number)];
     const Nodes nodes = nodesOf(scene, o);
-    const Vec3d origin = toDouble(scene.domain.min);
-    const int first = int(out.size());
+    Springs springs{out, int(out.size())};
     for (int64_t k = 0; k < nodes.n[2]; ++k)
         for (int64_t j = 0; j < nodes.n[1]; ++j)
-            for (int64_t i = 0; i < nodes.n[0]; ++i) {
-                const Vec3d x = placeOf(scene, o, nodes, i, j, k);
-                const auto holds = [&](const Grip& g) {
-                    for (int d = 0; d < scene.simulation.dimensions; ++d)
-                        if (x[d] < double(g.min[d]) || x[d] > double(g.max[d])) return false;
-                    return true;
-                };
-                const auto grip = std::find_if(scene.grips.begin(), scene.grips.end(), holds);
-                out.positions.push_back(toFloat(x - origin));
-                out.grips.push_back(grip == scene.grips.end() ? -1 : int(grip - scene.grips.begin()));
-                out.atSurface.push_back(nodes.atSurface(i, j, k));
-            }
-    out.masses.resize(out.size());
-    out.radii.resize(out.size(), 0.5f * spacingOf(scene, o));
-    out.objects.resize(out.size(), number);
-    Cells cells{scene, o, nodes, out, first};
+            for (int64_t i = 0; i < nodes.n[0]; ++i)
+                addParticle(scene, number, placeOf(scene, o, nodes, i, j, k), nodes.atSurface(i, j, k), out);
+    Cells cells{scene, o, nodes, springs};
     for (int64_t k = 0; k < nodes.cells(2); ++k)
         for (int64_t j = 0; j < nodes.cells(1); ++j)
             for (int64_t i = 0; i < nodes.cells(0); ++i) cells.add(i, j, k);
-    for (const auto& [pair, stiffness] : cells.springs)
-        out.bonds.push_back({first + pair.first, first + pair.second, float(length(cells.at(pair.first) - cells.at(pair.second))), float(stiffness)});
+    springs.bond();
+}
+
+// How often each triangle of a shell is cut into four, until no edge is longer than one and a half spacings.
+int divisionsOf(const Scene& scene, const Object& o, const Mesh& mesh) {
+    double longest = 0;
+    for (const Mesh::Triangle& t : mesh.triangles())
+        for (size_t k = 0; k < 3; ++k) longest = std::max(longest, length(mesh.vertices()[size_t(t[k])] - mesh.vertices()[size_t(t[(k + 1) % 3])]));
+    return std::max(0, int(std::ceil(std::log2(longest * o.scale / (1.5 * spacingOf(scene, o))))));
+}
+
+void divide(std::vector<Vec3d>& vertices, std::vector<Mesh::Triangle>& triangles) {
+    std::map<std::pair<int, int>, int> middles;
+    auto middle = [&](int a, int b) {
+        const auto [found, isNew] = middles.insert({{std::min(a, b), std::max(a, b)}, int(vertices.size())});
+        if (isNew) vertices.push_back(0.5 * (vertices[size_t(a)] + vertices[size_t(b)]));
+        return found->second;
+    };
+    std::vector<Mesh::Triangle> parts;
+    for (const auto [a, b, c] : triangles) {
+        const int ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+        parts.insert(parts.end(), {{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}});
+    }
+    triangles = std::move(parts);
+}
+
+// Corners are particles, edges bonds: of a net of equal triangles those of a plane layer, with Poisson's ratio 1/3.
+void sampleShell(const Scene& scene, int number, ObjectSample& out) {
+    const Object& o = scene.objects[size_t(number)];
+    const auto mesh = readMesh(o.path);
+    std::vector<Vec3d> vertices = mesh->vertices();
+    std::vector<Mesh::Triangle> triangles = mesh->triangles();
+    for (int k = divisionsOf(scene, o, *mesh); k > 0; --k) divide(vertices, triangles);
+    Springs springs{out, int(out.size())};
+    for (const Vec3d& x : vertices) addParticle(scene, number, toDouble(o.offset) + double(o.scale) * x, true, out);
+    const double k = std::numbers::sqrt3 / 4 * double(o.youngsModulus) * o.thickness;
+    for (const Mesh::Triangle& t : triangles) {
+        const Vec3d a = springs.at(t[0]), b = springs.at(t[1]), c = springs.at(t[2]);
+        for (const int corner : t) springs.addMass(corner, double(o.density) * o.thickness * length(cross(b - a, c - a)) / 6);
+        springs.join(t[0], t[1], k), springs.join(t[1], t[2], k), springs.join(t[2], t[0], k);
+    }
+    springs.bond();
 }
 
 }  // namespace
@@ -147,13 +201,19 @@ float spacingOf(const Scene& scene, const Object& o) { return o.spacing > 0 ? o.
 
 ObjectSample sampleObjects(const Scene& scene) {
     ObjectSample out;
-    for (size_t i = 0; i < scene.objects.size(); ++i) sampleObject(scene, int(i), out);
+    for (size_t i = 0; i < scene.objects.size(); ++i)
+        scene.objects[i].shape == ObjectShape::Shell ? sampleShell(scene, int(i), out) : sampleLattice(scene, int(i), out);
     return out;
 }
 
 double countObjectParticles(const Scene& scene) {
     double all = 0;
     for (const Object& o : scene.objects) {
+        if (o.shape == ObjectShape::Shell) {
+            const auto mesh = readMesh(o.path);
+            all += double(mesh->vertices().size()) * std::pow(4.0, divisionsOf(scene, o, *mesh));
+            continue;
+        }
         const Nodes nodes = nodesOf(scene, o);
         all += double(nodes.n[0]) * double(nodes.n[1]) * double(nodes.n[2]);
     }

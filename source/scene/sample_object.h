@@ -27,7 +27,7 @@ ObjectSample sampleObjects(const Scene&);
 // m between an object's particles, as asked for.
 float spacingOf(const Scene&, const Object&);
 
-// How many particles sampleObjects makes, without making any.
+// How many particles sampleObjects makes, of shells nearly, without making any.
 double countObjectParticles(const Scene&);
 
 }  // namespace spindrift

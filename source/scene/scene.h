@@ -29,7 +29,7 @@ enum class Face { None, XMin, XMax, YMin, YMax, ZMin, ZMax };
 enum class RangeMode { Frame, Run, Fixed };
 enum class ProbeKind { Point, Line, Height, Front };
 enum class Order { Mean, Linear };
-enum class ObjectShape { Block, Sheet, Tube };
+enum class ObjectShape { Block, Sheet, Tube, Shell };
 
 // A block reads min and max, a wedge too: its ridge runs along z, above the middle of its base. A sphere reads center and
 // radius, a cylinder center, radius, height and axis. A file, of fluid only, has no shape but particles. Of solids only: a plane reads center, a point of
@@ -77,7 +77,8 @@ struct Solid : Form {
 };
 
 // An elastic object: particles on a lattice, and bonds between them that are springs. It meets fluid, itself and other objects by contact forces. A block
-// reads min and max, a sheet too: it is flat along the axis on which they are the same. A tube, open at both ends, reads center, radius, height and axis.
+// reads min and max, a sheet too: it is flat along the axis on which they are the same. A tube, open at both ends, reads center, radius, height and axis,
+// a shell, the triangles of a file, path, scale and offset.
 struct Object {
     ObjectShape shape = ObjectShape::Block;
     Vec3 min{0, 0, 0}, max{0.5f, 0.5f, 0.5f};   // m
@@ -85,7 +86,10 @@ struct Object {
     float radius = 0.1f;                        // m, to the middle of the wall
     float height = 0.5f;                        // m
     Axis axis = Axis::X;
-    float thickness = 0.01f;                    // m, of a sheet or a tube's wall: one layer of particles, or more where it is thicker than a spacing
+    std::string path{};                         // of a mesh, beside the scene file when relative
+    float scale = 1;                            // m per unit of that
+    Vec3 offset{0, 0, 0};                       // m, of its origin
+    float thickness = 0.01f;                    // m, of a wall: one layer of particles, or more where a sheet or a tube is thicker than a spacing
     float spacing = 0;                          // m, of its particles, 0 = simulation.spacing
     float density = 1000;                       // kg/m^3
     float youngsModulus = 1e5f;                 // Pa

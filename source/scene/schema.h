@@ -52,7 +52,7 @@ constexpr auto enumNames(Face) {
 constexpr auto enumNames(RangeMode) { return std::array{"frame", "run", "fixed"}; }
 
 constexpr auto enumNames(ProbeKind) { return std::array{"point", "line", "height", "front"}; }
-constexpr auto enumNames(ObjectShape) { return std::array{"block", "sheet", "tube"}; }
+constexpr auto enumNames(ObjectShape) { return std::array{"block", "sheet", "tube", "shell"}; }
 constexpr auto enumNames(Order) { return std::array{"mean", "linear"}; }
 
 // Which knobs a shape has depends on which it is; that is visited first, so that a reader has set it before the others are chosen.
@@ -130,12 +130,16 @@ void visitMember(S& s, const std::string& at, Visitor&& visit) {
 template <class O, class Visitor>
 requires std::is_same_v<std::remove_const_t<O>, Object>
 void visitMember(O& o, const std::string& at, Visitor&& visit) {
-    visit(at + ".shape", o.shape, Knob{"", 0, 0, "block, sheet (flat along the axis on which min and max are the same) or tube, open at both ends", Restart});
+    visit(at + ".shape", o.shape, Knob{"", 0, 0, "block, sheet (flat along the axis on which min and max are the same), tube, open at both ends, or shell: triangles of a file", Restart});
     if (o.shape == ObjectShape::Tube) {
         visit(at + ".center", o.center, Knob{"m", -1e4f, 1e4f, "centre", Restart});
         visit(at + ".radius", o.radius, Knob{"m", 1e-6f, 1e4f, "to the middle of the wall", Restart});
         visit(at + ".height", o.height, Knob{"m", 1e-6f, 1e4f, "length along the axis", Restart});
         visit(at + ".axis", o.axis, Knob{"", 0, 0, "direction of the axis", Restart});
+    } else if (o.shape == ObjectShape::Shell) {
+        visit(at + ".path", o.path, Knob{"", 0, 0, "OBJ file of a closed surface; a relative path starts at the scene file", Restart});
+        visit(at + ".scale", o.scale, Knob{"", 1e-6f, 1e6f, "m per unit of the file", Restart});
+        visit(at + ".offset", o.offset, Knob{"m", -1e4f, 1e4f, "where the file's origin is", Restart});
     } else {
         visit(at + ".min", o.min, Knob{"m", -1e4f, 1e4f, "lower corner", Restart});
         visit(at + ".max", o.max, Knob{"m", -1e4f, 1e4f, "upper corner", Restart});

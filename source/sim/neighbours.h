@@ -22,9 +22,10 @@ template <class R> HD inline R nearestImage(R r, real period, real inversePeriod
 }
 
 template <class R> HD inline Vector<R> imageOf(const Constants& c, Vector<R> r) {
-    if (!c.periodic) return r;
-    return {nearestImage(r.x, c.period.x, c.inversePeriod.x), nearestImage(r.y, c.period.y, c.inversePeriod.y),
-            nearestImage(r.z, c.period.z, c.inversePeriod.z)};
+    if (c.periodic)
+        r = {nearestImage(r.x, c.period.x, c.inversePeriod.x), nearestImage(r.y, c.period.y, c.inversePeriod.y),
+             nearestImage(r.z, c.period.z, c.inversePeriod.z)};
+    return r;
 }
 
 template <class R> HD inline Pair<R> makePair(const Constants& c, Vector<R> xi, Vector<R> xj) {

@@ -149,6 +149,12 @@ struct WallsAtHome {
     ScalarField mass;       // 0: follows from neighbours
     Vector<real> size;      // m, the domain's
     HD int solidOf(int id) const { return solid ? solid[id - firstId] : -1; }
+    // Whether a cluster has any particle of a solid.
+    HD bool hasSolid(const Particles& walls, int cluster) const {
+        for (int k = 0; k < clusterSize; ++k)
+            if (const int id = walls.id[cluster * clusterSize + k]; id >= 0 && solidOf(id) >= 0) return true;
+        return false;
+    }
 };
 
 // The image of x in the domain.
@@ -199,7 +205,7 @@ struct KeepWallMass {
     }
 };
 
-// What fluid does to boundary particles: the terms of ComputeForces with their signs changed. m/s^2 per fluid particle's mass; of pressure, and
+// What fluid does to solids' particles: the terms of ComputeForces with their signs changed. m/s^2 per fluid particle's mass; of pressure, and
 // of the others.
 template <class Kernel, class Terms> struct ComputeWallLoads;
 template <class Kernel, class... Terms> struct ComputeWallLoads<Kernel, TermList<Terms...>> {
@@ -208,7 +214,9 @@ template <class Kernel, class... Terms> struct ComputeWallLoads<Kernel, TermList
     static constexpr unsigned needs = TermList<Terms...>::needs;
     View v;
     VectorField pressure, other;
+    WallsAtHome home;
     HD void operator()(Group b) const {
+        if (!home.hasSolid(v.walls, firstOf(b) / clusterSize)) return;
         const Wall<R> wall = loadWall<needs>(v.walls, b);
         Acceleration<R> a{};
         forNeighbours<Lists::All>(v, v.fluidNearWalls, b, load(v.walls.position, b), [&](auto p, Four j) LANE_CALL {
@@ -316,7 +324,7 @@ public:
     // What fluid does to each of their particles, and the sum over those of one solid.
     template <class Pass> void findLoads(const View& v) {
         reserveLoads(v.walls.slots);
-        device_.forEach(v.walls.slots, Pass{v, {pressureLoad_.data()}, {otherLoad_.data()}});
+        device_.forEach(v.walls.slots, Pass{v, {pressureLoad_.data()}, {otherLoad_.data()}, home()});
     }
     SumSolidLoad sumOf(const View& v, int solid) {
         return {v.walls, {pressureLoad_.data()}, {otherLoad_.data()}, home(), states_.data(), solid, v.c};

@@ -1,5 +1,6 @@
 // Elastic objects as particles and bonds: how many, how heavy, how stiff, and what is refused.
 #include "core/error.h"
+#include "scene/check.h"
 #include "scene/json.h"
 #include "scene/particles.h"
 #include "scene/sample_object.h"
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <functional>
 #include <numeric>
 
@@ -61,6 +63,23 @@ TEST(ObjectSampling, IsAsStiffAsTheMaterial) {
     EXPECT_NEAR(energyOf(sheet, [&](Vec3d x) { return Vec3d{e * x.z, 0, 0}; }) / (0.5 * 0.375 * E * e * e * sheetVolume), 1, 1e-3);
 }
 
+// An octahedron, whose eight triangles are cut until they are as fine as the spacing.
+TEST(ObjectSampling, ShellsAreNetsOfTriangles) {
+    const std::string path = testing::TempDir() + "octahedron.obj";
+    std::ofstream(path) << "v 1 0 0\nv -1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1\n"
+                           "f 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\nf 4 2 6\nf 1 4 6\n";
+    const Scene scene = sceneOf(R"([{"shape":"shell","path":")" + path + R"(","scale":0.2,"offset":[0.5,0.75,0.5],"thickness":0.01,"density":500,"youngs_modulus":1e5}])");
+    const ObjectSample s = sampleObjects(scene);
+    EXPECT_EQ(s.size(), 66u);            // edges of 0.28 m, cut twice: 8 x 16 triangles
+    EXPECT_EQ(s.bonds.size(), 192u);
+    EXPECT_EQ(countObjectParticles(scene), 96);
+    const double area = 8 * std::sqrt(3.0) / 4 * 2 * 0.2 * 0.2;
+    EXPECT_NEAR(massOf(s), 500 * 0.01 * area, 1e-4);
+    // Blown up evenly a layer stores E / (1 - nu) e^2 t A.
+    const double e = 1e-3;
+    EXPECT_NEAR(energyOf(s, [&](Vec3d x) { return e * (x - Vec3d{0.5, 0.75, 0.5}); }) / (1e5 / (1 - 1.0 / 3) * e * e * 0.01 * area), 1, 1e-3);
+}
+
 TEST(ObjectSampling, KnowsWhoIsHeldAndWhoIsAtTheSurface) {
     const ObjectSample s = sampleObjects(sceneOf(R"([{"shape":"block","min":[0.1,0.6,0.1],"max":[0.3,0.8,0.3]}])", {R"(grips=[{"min":[0,0,0],"max":[0.11,1,1]}])"}));
     EXPECT_EQ(s.size(), 125u);
@@ -81,7 +100,7 @@ TEST(ObjectSampling, FluidBeginsOutside) {
 TEST(ObjectChecks, SayWhatIsWrong) {
     auto refusal = [](const std::string& objects, const std::vector<std::string>& more = {}) -> std::string {
         try {
-            parseScene(writeScene(sceneOf(objects, more)), "a.json");
+            checkScene(sceneOf(objects, more), "a.json");
         } catch (const Error& error) { return error.what(); }
         return "";
     };

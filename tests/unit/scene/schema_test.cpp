@@ -50,10 +50,10 @@ int memberKnobs() {
 TEST(Schema, EveryFieldOfASceneHasItsLine) {
     Scene scene;
     scene.fluid.bodies.clear();
-    const int structs = 10;  // window ... output and the solids, each one field of Scene
+    const int structs = 14;  // window ... output and the lists, each one field of Scene
     const int fields = fieldCount<Scene>() - structs + fieldCount<Window>() +
                        fieldCount<Compute>() + fieldCount<SimulationKnobs>() +
-                       fieldCount<Domain>() + fieldCount<Walls>() + fieldCount<Fluid>() -
+                       fieldCount<Domain>() + fieldCount<Walls>() + fieldCount<Contact>() + fieldCount<Fluid>() -
                        1 /* bodies */ + fieldCount<TimeKnobs>() + fieldCount<View>() -
                        1 /* camera */ + fieldCount<Camera>() + fieldCount<Output>() -
                        1 /* probes */;
@@ -61,6 +61,9 @@ TEST(Schema, EveryFieldOfASceneHasItsLine) {
 
     EXPECT_EQ(memberKnobs<Body>(), fieldCount<Form>() + fieldCount<Body>() - 4 /* the base, and normal, scale and offset of solids */);
     EXPECT_EQ(memberKnobs<Solid>(), fieldCount<Form>() + fieldCount<Solid>() - 1);
+    EXPECT_EQ(memberKnobs<Object>(), fieldCount<Object>());
+    EXPECT_EQ(memberKnobs<Grip>(), fieldCount<Grip>());
+    EXPECT_EQ(memberKnobs<Cut>(), fieldCount<Cut>());
     EXPECT_EQ(memberKnobs<Probe>(), fieldCount<Probe>());
 }
 
