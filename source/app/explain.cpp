@@ -31,13 +31,18 @@ template <class Enum> const char* nameOf(Enum value) { return enumNames(value)[s
 
 }  // namespace
 
+std::string particlesOf(const Simulation& s) {
+    const std::string counts = fmt::format("{} fluid, {} boundary", s.fluidCount(), s.wallCount());
+    return s.objectParticleCount() > 0 ? fmt::format("{}, {} of objects", counts, s.objectParticleCount()) : counts;
+}
+
 int explain(const Scene& scene) {
     const auto simulation = makeSimulation(scene);
     const int64_t particles = int64_t(simulation->fluidCount()) + simulation->wallCount();
     const double support = scene.simulation.support, mebibyte = 1 << 20;
     fmt::print("scene        {}\n", scene.name);
     fmt::print("device       {}\n", simulation->deviceName());
-    fmt::print("particles    {} fluid, {} boundary\n", simulation->fluidCount(), simulation->wallCount());
+    fmt::print("particles    {}\n", particlesOf(*simulation));
     fmt::print("formulation  {}, {}, R = {:g} dx = {:.3g} m, about {:.0f} neighbours\n",
                nameOf(scene.simulation.formulation), nameOf(scene.simulation.kernel), support,
                supportRadius(scene), scene.simulation.dimensions == 2 ? 3.14159 * support * support : 4.18879 * support * support * support);

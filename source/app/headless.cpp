@@ -1,5 +1,6 @@
 #include "app/headless.h"
 
+#include "app/explain.h"
 #include "app/frame.h"
 #include "app/progress.h"
 #include "core/error.h"
@@ -260,8 +261,7 @@ private:
         fmt::print(out, "device         {}\n", simulation_->deviceName());
         if (pictures_ && pictures_->frame.copiesVertices())
             fmt::print(out, "vertices       copied through the host, because {} draws\n", glName());
-        fmt::print(out, "particles      {} fluid, {} boundary\n", simulation_->fluidCount(),
-                   simulation_->wallCount());
+        fmt::print(out, "particles      {}\n", particlesOf(*simulation_));
         fmt::print(out, "steps          {}, {:.3g} ms each\n", steps_, ms);
         if (scene_.time.mode == TimeMode::Local && made_ > 0)
             fmt::print(out, "local steps    {:.3g} evaluations of a particle a step\n",

@@ -9,9 +9,7 @@
 #include "scene/start_fields.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <random>
 
@@ -181,34 +179,6 @@ bool isTaken(const Scene& scene, const std::vector<Convex>& solids, Vec3d p) {
     const double skin = 0.1 * double(scene.simulation.spacing);
     return std::any_of(solids.begin(), solids.end(), [&](const Convex& solid) { return distanceFrom(scene, solid, p) < skin; });
 }
-
-// Where objects are: their particles in cells as wide as the longest contact, within which no fluid starts.
-class ObjectRoom {
-public:
-    explicit ObjectRoom(const Scene& scene) : sample_(sampleObjects(scene)), fluidRadius_(0.5 * double(scene.simulation.spacing)), influence_(scene.contact.influence) {
-        for (const float r : sample_.radii) cell_ = std::max(cell_, influence_ * (fluidRadius_ + double(r)));
-        for (size_t i = 0; i < sample_.size(); ++i) cells_[cellOf(toDouble(sample_.positions[i]))].push_back(int(i));
-    }
-    bool takes(Vec3d p) const {
-        const auto [x, y, z] = cellOf(p);
-        for (int64_t k = z - 1; k <= z + 1; ++k)
-            for (int64_t j = y - 1; j <= y + 1; ++j)
-                for (int64_t i = x - 1; i <= x + 1; ++i) {
-                    const auto found = cells_.find({i, j, k});
-                    if (found == cells_.end()) continue;
-                    for (const int n : found->second)
-                        if (length(toDouble(sample_.positions[size_t(n)]) - p) < 0.98 * influence_ * (fluidRadius_ + double(sample_.radii[size_t(n)]))) return true;
-                }
-        return false;
-    }
-
-private:
-    using Cell = std::array<int64_t, 3>;
-    Cell cellOf(Vec3d p) const { return {int64_t(std::floor(p.x / cell_)), int64_t(std::floor(p.y / cell_)), int64_t(std::floor(p.z / cell_))}; }
-    ObjectSample sample_;
-    double fluidRadius_, influence_, cell_ = 0;   // m
-    std::map<Cell, std::vector<int>> cells_;
-};
 
 // Where a particle begins, relative to domain.min, and of which body it has the rest.
 struct Place { Vec3d at; size_t body; };
@@ -460,9 +430,7 @@ double soundSpeed(const Scene& s, const FluidExtent& fluid) {
         for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], middle[k]), high[k] = std::max(high[k], middle[k]);
     }
     for (const Object& o : s.objects) {
-        const bool cornered = o.shape == ObjectShape::Block || o.shape == ObjectShape::Sheet;
-        const Vec3d middle = cornered ? 0.5 * (toDouble(o.min) + toDouble(o.max)) : toDouble(o.shape == ObjectShape::Tube ? o.center : o.offset);
-        const Vec3d at = middle - toDouble(s.domain.min);
+        const Vec3d at = middleOf(o) - toDouble(s.domain.min);
         for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], at[k]), high[k] = std::max(high[k], at[k]);
     }
     double fall = 0;   // m^2/s^2

@@ -220,4 +220,31 @@ double countObjectParticles(const Scene& scene) {
     return all;
 }
 
+Vec3d middleOf(const Object& o) {
+    if (o.shape == ObjectShape::Tube) return toDouble(o.center);
+    return o.shape == ObjectShape::Shell ? toDouble(o.offset) : 0.5 * (toDouble(o.min) + toDouble(o.max));
+}
+
+ObjectRoom::ObjectRoom(const Scene& scene)
+    : sample_(sampleObjects(scene)), fluidRadius_(0.5 * double(scene.simulation.spacing)), influence_(scene.contact.influence) {
+    for (const float r : sample_.radii) cell_ = std::max(cell_, influence_ * (fluidRadius_ + double(r)));
+    for (size_t i = 0; i < sample_.size(); ++i) cells_[cellOf(toDouble(sample_.positions[i]))].push_back(int(i));
+}
+
+ObjectRoom::Cell ObjectRoom::cellOf(Vec3d p) const {
+    return {int64_t(std::floor(p.x / cell_)), int64_t(std::floor(p.y / cell_)), int64_t(std::floor(p.z / cell_))};
+}
+
+bool ObjectRoom::takes(Vec3d p) const {
+    const auto near = [&](int n) {
+        return length(toDouble(sample_.positions[size_t(n)]) - p) < 0.98 * influence_ * (fluidRadius_ + double(sample_.radii[size_t(n)]));
+    };
+    const auto [x, y, z] = cellOf(p);
+    for (int64_t k = z - 1; k <= z + 1; ++k)
+        for (int64_t j = y - 1; j <= y + 1; ++j)
+            for (int64_t i = x - 1; i <= x + 1; ++i)
+                if (const auto found = cells_.find({i, j, k}); found != cells_.end() && std::any_of(found->second.begin(), found->second.end(), near)) return true;
+    return false;
+}
+
 }  // namespace spindrift

@@ -2,7 +2,9 @@
 // Elastic objects -> particles and the bonds between them.
 #include "scene/scene.h"
 
+#include <array>
 #include <cstdint>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -29,5 +31,22 @@ float spacingOf(const Scene&, const Object&);
 
 // How many particles sampleObjects makes, of shells nearly, without making any.
 double countObjectParticles(const Scene&);
+
+// About where an object is, m, world coordinates.
+Vec3d middleOf(const Object&);
+
+// Where objects are: their particles in cells as wide as the longest contact, within which no fluid starts.
+class ObjectRoom {
+public:
+    explicit ObjectRoom(const Scene&);
+    bool takes(Vec3d) const;   // m from domain.min
+
+private:
+    using Cell = std::array<int64_t, 3>;
+    Cell cellOf(Vec3d) const;
+    ObjectSample sample_;
+    double fluidRadius_, influence_, cell_ = 0;   // m
+    std::map<Cell, std::vector<int>> cells_;
+};
 
 }  // namespace spindrift

@@ -208,7 +208,7 @@ struct KeepOutOfSolids {
         Vector<real> end = free ? way.to : way.stays;
         for (int s = 0; s < v.solidCount; ++s)
             if (leave(v.solids[s], end, u)) last = s;
-        store(v.fluid.position, i, end);
+        store(v.fluid.position, i, inBox(end));   // also where a solid that floats presses it against a wall
         store(v.fluid.velocity, i, u);
         if (bounces.solid.data) store(bounces.change, i, u - before), store(bounces.solid, i, real(last));
     }

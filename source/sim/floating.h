@@ -10,9 +10,6 @@
 
 namespace spindrift::LANES {
 
-// What moves a solid on a step; in two dimensions of a slab one spacing thick. N and N m about its centre of mass.
-struct Wrench { Vec3d force, torque; };
-
 // Where a solid touches, it is made of balls: its outermost boundary particles, as large as they are deep in it. They press like damped springs and rub
 // (Cundall & Strack 1979); a face full of them is as stiff as the step can bear, and overlaps by less than a thousandth of a spacing under its weight.
 struct Touch { Vec3d force, torque; HD_OUT void add(const Touch& o) { force = force + o.force, torque = torque + o.torque; } };
@@ -121,7 +118,7 @@ struct MoveFloating {
         const RigidBody& body = bodies[s];
         SolidMotion& m = motions[s];
         const double dt = v.state->dt;
-        Wrench w = wrenchOn(s);
+        Touch w = wrenchOn(s);
         if (hold.solid == s) pull(w, body, m, v.solids[s]);
         if (v.c.dimensions == 2) w.force.z = w.torque.x = w.torque.y = 0;
         m.velocity = m.velocity + (kick * dt / body.mass) * w.force;
@@ -129,7 +126,7 @@ struct MoveFloating {
         m.place = wrapped(m.place + (drift * dt) * m.velocity);
         turnBy(m.turn, (drift * dt) * spinOf(body, m));
     }
-    HD Wrench wrenchOn(int s) const {
+    HD Touch wrenchOn(int s) const {
         const SolidLoad& load = loads[s];
         const SolidState& state = v.solids[s];
         const Vector<real> pull = bodyForce(v.c, gravityNow(v), state.centreOfMass), out = state.middle - state.centreOfMass;
@@ -138,7 +135,7 @@ struct MoveFloating {
         return {fluid + touches[s].force + bodies[s].mass * Vec3d{pull.x, pull.y, pull.z},
                 fluidMass * torque + cross(Vec3d{out.x, out.y, out.z}, fluid) + touches[s].torque};
     }
-    HD void pull(Wrench& w, const RigidBody& body, const SolidMotion& m, const SolidState& s) const {
+    HD void pull(Touch& w, const RigidBody& body, const SolidMotion& m, const SolidState& s) const {
         const double rate = 15, most = 60;   // 1/s, m/s^2
         const Vec3d target{hold.target.x, hold.target.y, hold.target.z};
         const Vec3d wanted = (rate * rate) * (target - Vec3d{s.middle.x, s.middle.y, s.middle.z}) - (2 * rate) * m.velocity;

@@ -13,7 +13,7 @@ const char* const Scenes[] = {"1.json", "2.json", "3.json", "dam_break.json", "d
                               "pool_drop.json", "still_pool.json", "poiseuille.json", "test/dam_break_small.json",
                               "test/historical_small.json", "validation/hydrostatic.json", "validation/cavity.json",
                               "validation/taylor_green.json", "validation/drop.json", "test/solids_small.json",
-                              "test/mixture_small.json", "test/surface_small.json", "test/floating_small.json", "test/mesh_small.json"};
+                              "test/mixture_small.json", "test/surface_small.json", "test/floating_small.json", "test/mesh_small.json", "test/artery_small.json"};
 
 std::unique_ptr<Simulation> onCpu(const Scene& s, const RunState& from) { return makeSimdSimulation(s, from, 2); }
 std::unique_ptr<Simulation> onGpu(const Scene& s, const RunState& from) { return makeCudaSimulation(s, from, 0); }

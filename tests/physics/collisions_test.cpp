@@ -1,5 +1,6 @@
 // Nobody gets through a solid, however thin it is and however far a particle moves in a step; and what meshes do to fluid is what other solids do.
 #include "meshes.h"
+#include "physics/cube.h"
 #include "scene/convex.h"
 #include "scene/json.h"
 #include "scene/particles.h"
@@ -16,17 +17,9 @@
 namespace spindrift {
 namespace {
 
-Scene sceneOf(const std::vector<std::string>& knobs) {
-    Scene scene;
-    scene.compute.backend = Backend::Cpu;
-    scene.domain.max = {1, 1, 1};
-    scene.simulation.spacing = 0.05f;
-    for (const std::string& knob : knobs) setKnob(scene, knob);
-    return scene;
-}
 // Particles without pressure, gravity or friction, which fly on until they hit something, in steps of 10 ms: at 50 m/s ten spacings each.
 Scene dustOf(const std::vector<std::string>& knobs) {
-    Scene scene = sceneOf({"simulation.gravity=0,0,0", "fluid.stiffness=1e-9", "fluid.viscosity=0", "fluid.artificial_viscosity=0", "fluid.density_diffusion=0",
+    Scene scene = cubeWith({"simulation.gravity=0,0,0", "fluid.stiffness=1e-9", "fluid.viscosity=0", "fluid.artificial_viscosity=0", "fluid.density_diffusion=0",
                            "time.mode=fixed", "time.step=0.01", "walls.restitution=1"});
     for (const std::string& knob : knobs) setKnob(scene, knob);
     return scene;
@@ -91,7 +84,7 @@ TEST(Collisions, ThinPlatesStopFluidWithPressure) {
                 const std::string plate = shape[0] == 'm' ? mesh(boxSurface({-0.2, 0.4, -0.2}, {1.2, 0.41, 1.2}), "leaf")
                                         : shape[0] == 'b' ? R"({"shape":"block","min":[-0.2,0.4,-0.2],"max":[1.2,0.41,1.2]})"
                                                           : R"({"shape":"plane","center":[0,0.41,0]})";
-                Scene scene = sceneOf({std::string("time.mode=") + mode, "simulation.dimensions=" + std::to_string(dimensions), "fluid.sound_speed=20", "solids=[" + plate + "]", Above});
+                Scene scene = cubeWith({std::string("time.mode=") + mode, "simulation.dimensions=" + std::to_string(dimensions), "fluid.sound_speed=20", "solids=[" + plate + "]", Above});
                 scene.fluid.bodies[0].velocity = {0, -30, 0};
                 expectAll(plate + mode, scene, 150, [](const Particle& p) { return p.position.y > 0.405; });
             }
@@ -210,7 +203,7 @@ TEST(Collisions, NobodyLeavesARoomThatMoves) {
 // A mesh of a block does what the block does: pushes as much and feels the same.
 TEST(Meshes, PushAsOtherSolidsDo) {
     auto gainedBy = [](const std::string& solid) {
-        const Scene scene = sceneOf({"simulation.formulation=delta_sph", "simulation.gravity=0,0,0", "walls.kind=reflect", "time.cfl=0.1", "domain.max=3,1,1", "fluid.viscosity=1",
+        const Scene scene = cubeWith({"simulation.formulation=delta_sph", "simulation.gravity=0,0,0", "walls.kind=reflect", "time.cfl=0.1", "domain.max=3,1,1", "fluid.viscosity=1",
                                      R"(fluid.bodies=[{"shape":"block","min":[0.4,0.3,0.3],"max":[0.8,0.7,0.7]}])", "solids=[" + solid + "]"});
         auto simulation = makeSimulation(scene);
         Vec3d impulse;
@@ -241,7 +234,7 @@ TEST(Meshes, AreLiftedByTheWeightOfTheirWater) {
     const double pi = std::numbers::pi;
     const std::pair<std::string, double> solids[] = {{mesh(cube, "turned"), std::pow(0.24, 3)}, {mesh(sphereSurface({0.3, 0.23, 0.3}, 0.13, 3), "float"), 4 * pi / 3 * std::pow(0.13, 3)}};
     for (const auto& [solid, volume] : solids) {
-        const Scene scene = sceneOf({"simulation.formulation=delta_sph", "simulation.spacing=0.025", "domain.max=0.6,0.6,0.6", "fluid.viscosity=0", "fluid.artificial_viscosity=0.3",
+        const Scene scene = cubeWith({"simulation.formulation=delta_sph", "simulation.spacing=0.025", "domain.max=0.6,0.6,0.6", "fluid.viscosity=0", "fluid.artificial_viscosity=0.3",
                                      "fluid.speed_ratio=8", "time.cfl=0.5", "solids=[" + solid + "]",
                                      R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.6,0.45,0.6],"pressure":"hydrostatic"}])"});
         auto simulation = makeSimulation(scene);

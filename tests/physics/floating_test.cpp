@@ -1,5 +1,5 @@
 // Solids that float: what fluid gives them it loses, they weigh what they should, fall, tumble and slide as mechanics says, and the mouse can drag them.
-#include "scene/json.h"
+#include "physics/cube.h"
 #include "scene/mass.h"
 #include "sim/simulation.h"
 
@@ -11,17 +11,11 @@
 namespace spindrift {
 namespace {
 
-// A box with a little fluid in a corner, where nobody meets it.
+// Steps of half a millisecond, unless the knobs say otherwise.
 Scene sceneOf(const std::vector<std::string>& knobs) {
-    Scene scene;
-    scene.compute.backend = Backend::Cpu;
-    scene.domain.max = {1, 1, 1};
-    scene.simulation.spacing = 0.05f;
-    scene.fluid.bodies[0].max = {0.1f, 0.1f, 0.1f};
-    scene.time.mode = TimeMode::Fixed;
-    scene.time.step = 0.0005f;
-    for (const std::string& knob : knobs) setKnob(scene, knob);
-    return scene;
+    std::vector<std::string> all{"time.mode=fixed", "time.step=0.0005"};
+    all.insert(all.end(), knobs.begin(), knobs.end());
+    return dryCubeWith(all);
 }
 
 SolidMeasurement solidAfter(Simulation& simulation, int steps) {

@@ -1,6 +1,6 @@
 // Elastic objects: they bend as beams do, break when they should, keep momentum, and fluid and objects keep out of each other's way.
 #include "physics/bonded_reference.h"
-#include "scene/json.h"
+#include "physics/cube.h"
 #include "scene/sample_object.h"
 #include "sim/simulation.h"
 
@@ -12,16 +12,10 @@
 namespace spindrift {
 namespace {
 
-// A box with a little fluid in a corner.
 Scene sceneOf(const std::vector<std::string>& knobs) {
-    Scene scene;
-    scene.compute.backend = Backend::Cpu;
-    scene.domain.max = {1, 1, 1};
-    scene.simulation.spacing = 0.05f;
-    scene.fluid.bodies[0].max = {0.1f, 0.1f, 0.1f};
-    scene.walls.kind = WallKind::Reflect;
-    for (const std::string& knob : knobs) setKnob(scene, knob);
-    return scene;
+    std::vector<std::string> all{"walls.kind=reflect"};
+    all.insert(all.end(), knobs.begin(), knobs.end());
+    return dryCubeWith(all);
 }
 
 void runUntil(Simulation& simulation, double time) {
@@ -104,7 +98,7 @@ TEST(Objects, WaterStaysInABag) {
                                R"(grips=[{"min":[0,0,0],"max":[0.051,1,1]},{"min":[0.949,0,0],"max":[1,1,1]},{"min":[0,0,0],"max":[1,1,0.051]},{"min":[0,0,0.949],"max":[1,1,1]}])"});
         scene.objects[0].spacing = spacing;
         auto simulation = makeSimulation(scene);
-        runUntil(*simulation, 1.0);
+        runUntil(*simulation, 0.5);
         const ObjectState state = simulation->state().objects;
         double lowest = 1;
         for (const Vec3& x : state.positions) lowest = std::min<double>(lowest, x.y);

@@ -1,4 +1,5 @@
 // Solids in the fluid: they are where their keyframes say, nobody gets into them, and what they feel is what the fluid feels.
+#include "physics/cube.h"
 #include "scene/convex.h"
 #include "scene/json.h"
 #include "scene/particles.h"
@@ -11,15 +12,6 @@
 
 namespace spindrift {
 namespace {
-
-Scene sceneOf(const std::vector<std::string>& knobs) {
-    Scene scene;
-    scene.compute.backend = Backend::Cpu;
-    scene.domain.max = {1, 1, 1};
-    scene.simulation.spacing = 0.05f;
-    for (const std::string& knob : knobs) setKnob(scene, knob);
-    return scene;
-}
 
 TEST(Solids, AreWhereTheirKeyframesSay) {
     const Scene scene = loadScene(SPINDRIFT_SOURCE_DIR "/configs/test/solids_small.json");
@@ -47,7 +39,7 @@ TEST(Solids, KeepEverybodyOutAtAnySpeed) {
                                   R"({"shape":"block","min":[0.3,0.3,0.2],"max":[0.7,0.36,0.8]})"})
             for (float speed : {5.0f, 100.0f}) {
                 SCOPED_TRACE(testing::Message() << formulation << " " << solid << " " << speed);
-                Scene scene = sceneOf({std::string("simulation.formulation=") + formulation, std::string("solids=[") + solid + "]",
+                Scene scene = cubeWith({std::string("simulation.formulation=") + formulation, std::string("solids=[") + solid + "]",
                                        R"(fluid.bodies=[{"shape":"block","min":[0.2,0.5,0.2],"max":[0.8,0.9,0.8]}])"});
                 scene.fluid.bodies[0].velocity = {0, -speed, 0};
                 auto simulation = makeSimulation(scene);
@@ -60,7 +52,7 @@ TEST(Solids, KeepEverybodyOutAtAnySpeed) {
 
 // Fluid sticks to solids and to walls, also where its viscosity is set after the start.
 TEST(Solids, ViscosityThatComesLaterIsTheSameFromThenOn) {
-    Scene scene = sceneOf({R"(solids=[{"shape":"sphere","center":[0.5,0.3,0.5],"radius":0.2}])", "walls.margin=0",
+    Scene scene = cubeWith({R"(solids=[{"shape":"sphere","center":[0.5,0.3,0.5],"radius":0.2}])", "walls.margin=0",
                            R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[1,0.6,1],"velocity":[1,0,0]}])"});
     scene.fluid.viscosity = 5;
     auto first = makeSimulation(scene);
@@ -79,7 +71,7 @@ TEST(Solids, ViscosityThatComesLaterIsTheSameFromThenOn) {
 TEST(Solids, FeelWhatTheFluidFeels) {
     for (const char* formulation : {"wcsph", "delta_sph"}) {
         SCOPED_TRACE(formulation);
-        const Scene scene = sceneOf({std::string("simulation.formulation=") + formulation, "simulation.gravity=0,0,0", "walls.kind=reflect", "time.cfl=0.1",
+        const Scene scene = cubeWith({std::string("simulation.formulation=") + formulation, "simulation.gravity=0,0,0", "walls.kind=reflect", "time.cfl=0.1",
                                      "domain.max=3,1,1", "fluid.viscosity=1", R"(fluid.bodies=[{"shape":"block","min":[0.4,0.3,0.3],"max":[0.8,0.7,0.7]}])",
                                      R"(solids=[{"shape":"block","min":[0.2,0.2,0.2],"max":[0.4,0.8,0.8],"velocity":[0.4,0,0.2]}])"});
         auto simulation = makeSimulation(scene);
@@ -100,7 +92,7 @@ TEST(Solids, FeelWhatTheFluidFeels) {
 
 // Archimedes: in still water a solid is pushed up by the weight of the water in its place.
 TEST(Solids, AreLiftedByTheWeightOfTheirWater) {
-    const Scene scene = sceneOf({"simulation.formulation=delta_sph", "simulation.dimensions=2", "simulation.spacing=0.02", "fluid.artificial_viscosity=0.2",
+    const Scene scene = cubeWith({"simulation.formulation=delta_sph", "simulation.dimensions=2", "simulation.spacing=0.02", "fluid.artificial_viscosity=0.2",
                                  "fluid.speed_ratio=8", "time.cfl=0.5",
                                  R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[1,0.8,1],"pressure":"hydrostatic"}])",
                                  R"(solids=[{"shape":"sphere","center":[0.35,0.4,0.5],"radius":0.15},{"shape":"block","min":[0.65,0.3,0],"max":[0.85,0.5,1]}])"});

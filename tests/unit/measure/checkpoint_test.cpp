@@ -3,12 +3,14 @@
 
 #include "core/error.h"
 #include "scene/json.h"
+#include "sim/simulation.h"
 
 #include <gtest/gtest.h>
 #include <hdf5.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
@@ -148,6 +150,35 @@ TEST_F(Checkpoints, FullDiskKeepsTheLastOne) {
     EXPECT_EQ(bytesOf(file), before);
     EXPECT_EQ(outcome(file), "");
     EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1) << "leaves something beside it";
+}
+
+// What floats and what bends is there again, and the run has the bits of the one that went on.
+TEST_F(Checkpoints, HoldSolidsThatFloatAndObjects) {
+    Scene s = loadScene(SPINDRIFT_SOURCE_DIR "/configs/test/floating_small.json");
+    s.compute.backend = Backend::Cpu;
+    setKnob(s, R"(objects=[{"shape":"sheet","min":[0.05,0.55,0.1],"max":[0.25,0.55,0.7],"breaking_strain":0.01}])");
+    setKnob(s, R"(grips=[{"min":[0,0.5,0],"max":[0.06,0.6,1]}])");
+    auto first = makeSimulation(s);
+    first->step(120);
+    const RunState left = first->state();
+    writeCheckpoint(file, s, left);
+    const Checkpoint c = readCheckpoint(file);
+    ASSERT_EQ(c.state.solids.size(), 3u);
+    for (size_t k = 0; k < 3; ++k) {
+        EXPECT_EQ(c.state.solids[k].place, left.solids[k].place);
+        EXPECT_EQ(c.state.solids[k].velocity, left.solids[k].velocity);
+        EXPECT_EQ(c.state.solids[k].angularMomentum, left.solids[k].angularMomentum);
+        for (int q = 0; q < 4; ++q) EXPECT_EQ(c.state.solids[k].turn[q], left.solids[k].turn[q]);
+    }
+    EXPECT_EQ(c.state.objects.positions, left.objects.positions);
+    EXPECT_EQ(c.state.objects.broken, left.objects.broken);
+    EXPECT_GT(std::count(left.objects.broken.begin(), left.objects.broken.end(), 1), 0);
+    first->restart(left);
+    auto second = makeSimulation(c.scene, c.state);
+    for (Simulation* run : {first.get(), second.get()}) run->step(50);
+    EXPECT_EQ(first->state().particles.positions, second->state().particles.positions);
+    EXPECT_EQ(first->state().objects.positions, second->state().objects.positions);
+    EXPECT_EQ(first->measure().solids[0].position, second->measure().solids[0].position);
 }
 
 }  // namespace

@@ -155,5 +155,25 @@ TEST(Solids, MistakesAreNamed) {
     for (const auto& [solid, words] : mistakes) EXPECT_NE(complaint(solid).find(words), std::string::npos) << complaint(solid);
 }
 
+TEST(Solids, WhatFloatsIsRefusedWhereItCannot) {
+    auto refusal = [](const std::string& solids, const std::vector<std::string>& more = {}) -> std::string {
+        Scene scene;
+        scene.domain.max = {1, 1, 1};
+        setKnob(scene, "solids=" + solids);
+        for (const std::string& knob : more) setKnob(scene, knob);
+        try {
+            checkScene(scene, "a.json");
+        } catch (const Error& error) { return error.what(); }
+        return "";
+    };
+    const std::string ball = R"({"shape":"sphere","center":[0.7,0.7,0.5],"radius":0.1,"density":500})";
+    EXPECT_EQ(refusal("[" + ball + "]"), "");
+    EXPECT_NE(refusal("[" + ball + R"(,{"shape":"block","min":[0.6,0.7,0.4],"max":[0.8,0.9,0.6]}])").find("begins inside solids[1]"), std::string::npos);
+    EXPECT_NE(refusal(R"([{"shape":"sphere","center":[0.95,0.7,0.5],"radius":0.1,"density":500}])").find("out of the domain"), std::string::npos);
+    EXPECT_NE(refusal(R"([{"shape":"sphere","density":500,"keyframes":[[0,0,0,0],[1,1,0,0]]}])").find("leave one of the two out"), std::string::npos);
+    EXPECT_NE(refusal("[" + ball + "]", {"time.mode=local"}).find("set time.mode to cfl"), std::string::npos);
+    EXPECT_NE(refusal(R"([{"shape":"plane","center":[0,0.1,0],"normal":[0,1,0],"density":500}])").find("does not move"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace spindrift

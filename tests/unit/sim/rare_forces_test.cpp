@@ -1,4 +1,5 @@
 // Forces that few scenes have, against their formulas summed up one pair after the other in double precision.
+#include "scene/json.h"
 #include "sim/make_simulation.h"
 
 #include <gtest/gtest.h>
@@ -201,6 +202,26 @@ TEST(Viscosity, OfAParabolaIsExactOnTheLatticeWithEveryKernel) {
                 EXPECT_NEAR(p.acceleration.x, 10 / 1000.0 * 2, 2e-4) << int(kernel) << " " << dimensions;
             }
             EXPECT_GT(inside, 3);
+        }
+}
+
+// The colour mode: of a pool its upper layer, of lists with each pair once and of others.
+TEST(Surface, IsWhereTheColourEnds) {
+    for (const char* formulation : {"wcsph", "delta_sph"})
+        for (const Precision precision : {Precision::Float, Precision::Double}) {
+            Scene scene;
+            scene.compute.backend = Backend::Cpu, scene.compute.precision = precision;
+            setKnob(scene, std::string("simulation.formulation=") + formulation);
+            scene.domain.max = {1, 1, 1}, scene.simulation.spacing = 0.05f;
+            scene.fluid.bodies[0].max = {1, 0.6f, 1};
+            auto simulation = makeSimulation(scene);
+            simulation->step(3);
+            std::vector<Vertex> vertices(size_t(simulation->fluidCount()));
+            simulation->writeVertices({vertices.data()}, ColorBy::Surface, 0);
+            for (const Vertex& v : vertices) {
+                if (v.y > 0.56f) { EXPECT_EQ(v.value, 1) << v.x << " " << v.y << " " << v.z; }
+                if (v.y < 0.5f) { EXPECT_EQ(v.value, 0) << v.x << " " << v.y << " " << v.z; }
+            }
         }
 }
 
