@@ -11,7 +11,7 @@
 namespace spindrift::LANES {
 
 // Where a solid touches, it is made of balls: its outermost boundary particles, as large as they are deep in it. They press like damped springs and rub
-// (Cundall & Strack 1979); a face full of them is as stiff as the step can bear, and overlaps by less than a thousandth of a spacing under its weight.
+// (Cundall & Strack 1979); a face full of them is as stiff as the step can bear, and overlaps by about a thousandth of a spacing under its weight.
 struct Touch { Vec3d force, torque; HD_OUT void add(const Touch& o) { force = force + o.force, torque = torque + o.torque; } };
 
 // Sums what `solid` feels where its balls touch walls and other solids, and where other solids' balls touch it.
@@ -162,20 +162,35 @@ struct MoveFloating {
     }
 };
 
-// Owns what is known of solids as bodies with a mass: only where one floats or has been dragged.
+// Owns what is known of solids as bodies that move by themselves or are dragged.
 template <class Device> class Floating {
 public:
     explicit Floating(Device& device) : device_(device) {}
 
-    // `motions` of a run that goes on; none: solids are at their places in the scene. `step` is the longest that the run takes, s.
-    void place(const Scene& scene, double step, std::vector<SolidMotion> motions) {
-        std::vector<RigidBody> bodies;
-        for (const Solid& solid : scene.solids) bodies.push_back(bodyOf(scene, solid, step));
-        for (size_t s = motions.size(); s < bodies.size(); ++s)
-            motions.push_back(scene.solids[s].floats() ? motionAtHome(scene, scene.solids[s], bodies[s]) : SolidMotion{});
-        CHECK(motions.size() == bodies.size());
-        loads_.resize(bodies.size()), touches_.resize(bodies.size());
-        fill(bodies_, bodies), fill(motions_, motions);
+    // What solids are, for good.
+    void place(const Scene& scene) {
+        for (const Solid& solid : scene.solids) {
+            onHost_.push_back(bodyOf(scene, solid));
+            faces_.push_back(solid.floats() ? ballsOfAFace(scene, solid) : 1);
+        }
+        loads_.resize(onHost_.size()), touches_.resize(onHost_.size());
+    }
+    // `motions` of a run that goes on; none: solids are at their places in the scene.
+    void restart(const Scene& scene, std::vector<SolidMotion> motions) {
+        for (size_t s = motions.size(); s < onHost_.size(); ++s)
+            motions.push_back(scene.solids[s].floats() ? motionAtHome(scene, scene.solids[s], onHost_[s]) : SolidMotion{});
+        CHECK(motions.size() == onHost_.size());
+        fill(motions_, motions);
+    }
+    // How balls press, as live knobs say: a face full of them swings a fifth of a radian in the longest `step` that the run takes, s.
+    void setSprings(const Scene& scene, double step) {
+        const double rate = 0.2 / step, lost = std::log(std::max(double(scene.walls.restitution), 1e-6)), ratio = -lost / std::hypot(lost, std::numbers::pi);
+        for (size_t s = 0; s < onHost_.size(); ++s) {
+            if (onHost_[s].mass <= 0) continue;
+            onHost_[s].stiffness = real(onHost_[s].mass * rate * rate / faces_[s]);
+            onHost_[s].damping = real(2 * ratio * onHost_[s].mass * rate / faces_[s]);
+        }
+        fill(bodies_, onHost_);
     }
     std::vector<SolidMotion> download() {
         std::vector<SolidMotion> motions(motions_.size());
@@ -212,22 +227,23 @@ private:
         buffer.resize(host.size());
         device_.upload(buffer.data(), host.data(), host.size());
     }
-    static RigidBody bodyOf(const Scene& scene, const Solid& solid, double step) {
-        const real without = real(1e30);
-        RigidBody body{0, {}, {{}, {}, {}}, without, without, solid.friction, real(0.75) * scene.simulation.spacing};
+    static real deepestBall(const Scene& scene) { return real(0.75) * scene.simulation.spacing; }
+    static RigidBody bodyOf(const Scene& scene, const Solid& solid) {
+        const real hard = real(1e30);
+        RigidBody body{0, {}, {{}, {}, {}}, hard, hard, solid.friction, deepestBall(scene)};
         if (!solid.floats()) return body;
         const Mass mass = massOf(scene, solid);
+        body.mass = mass.mass, body.centre = mass.centre;
+        invert(mass.inertia, body.inverseInertia);
+        return body;
+    }
+    // As if it were a cube.
+    static double ballsOfAFace(const Scene& scene, const Solid& solid) {
         const Convex shape = convexOf(solid, scene.simulation.dimensions);
         double outermost = 0;
         for (const Vec3& p : sampleSolid(scene, solid).positions)
-            outermost += -shape.nearest(toDouble(p + scene.domain.min) - shape.middle).distance <= double(body.deepestBall);
-        const double face = std::max(1.0, outermost / (2 * scene.simulation.dimensions)), rate = 0.2 / step;
-        const double lost = std::log(std::max(double(scene.walls.restitution), 1e-6)), ratio = -lost / std::hypot(lost, std::numbers::pi);
-        body.mass = mass.mass, body.centre = mass.centre;
-        invert(mass.inertia, body.inverseInertia);
-        body.stiffness = real(body.mass * rate * rate / face);
-        body.damping = real(2 * ratio * body.mass * rate / face);
-        return body;
+            outermost += -shape.nearest(toDouble(p + scene.domain.min) - shape.middle).distance <= double(deepestBall(scene));
+        return std::max(1.0, outermost / (2 * scene.simulation.dimensions));
     }
     // Of a symmetric matrix, by cofactors.
     static void invert(const Vec3d (&m)[3], Vec3d (&inverse)[3]) {
@@ -246,6 +262,8 @@ private:
     }
 
     Device& device_;
+    std::vector<RigidBody> onHost_;
+    std::vector<double> faces_;   // balls of a face of each
     Buffer<RigidBody, Device> bodies_{device_};
     Buffer<SolidMotion, Device> motions_{device_};
     Buffer<SolidLoad, Device> loads_{device_};

@@ -175,10 +175,11 @@ struct FollowDriver {
 struct FindObjectSpeed {
     ObjectParticles o;
     const StepState* state;
+    real least;   // m/s, as fast as a driver has them go, whatever velocities it says
     HD void addTo(Extremes& e, int i) const {
         const Vector<real> u = load(o.velocity, i), a = load(o.acceleration, i);
         const real speed = squareRoot(dot(u, u)) + (o.grip[i] < 0 ? real(state->dt) * squareRoot(dot(a, a)) : real(0));
-        e.add({float(speed * speed), 0});
+        e.add({float(max(speed * speed, least * least)), 0});
     }
 };
 struct TakeFaster {
@@ -315,12 +316,15 @@ public:
         driver_->exchange(time, forces, positions, velocities);
         CHECK(positions.size() == sample_.size() && velocities.size() == sample_.size());
         for (Vec3d& x : positions) x = x - origin_;
+        drivenSpeed_ = 0;
+        const std::vector<Vec3d> before = doubles(position_);
+        for (size_t i = 0; i < before.size(); ++i) drivenSpeed_ = std::max(drivenSpeed_, length(positions[i] - before[i]) / driver_->interval());
         fillVectors(target_, positions), fillVectors(velocity_, velocities), fillVectors(impulse_, std::vector<Vec3d>(sample_.size()));
         exchanged_ = time, arrival_ = time + driver_->interval();
         return true;
     }
     void findSpeed(const StepState* state, Extremes* fluid) {
-        device_.reduce(count(), FindObjectSpeed{particles(), state}, speed_.data());
+        device_.reduce(count(), FindObjectSpeed{particles(), state, real(driver_ ? drivenSpeed_ : 0)}, speed_.data());
         device_.forEach(1, TakeFaster{fluid, speed_.data()});
     }
     void writeVertices(Vertex* out, float fluidSpacing) {
@@ -428,6 +432,7 @@ private:
     double longestStep_ = 1e9;
     ObjectDriver* driver_ = nullptr;
     double exchanged_ = 0, arrival_ = 0;  // s: when it was asked last, and when particles are to be where it said
+    double drivenSpeed_ = 0;              // m/s, the most on the way there
     Vec3d origin_;                        // m, the domain's lower corner
     Buffer<real, Device> target_{device_}, impulse_{device_};
     Buffer<real, Device> position_{device_}, velocity_{device_}, acceleration_{device_}, home_{device_}, mass_{device_}, radius_{device_}, torn_{device_};

@@ -40,6 +40,7 @@ public:
         if (wallsMove()) walls_.move();
         if (solids_.floats()) solids_.reserveLoads(walls_.slots()), floating_.bounces((fluidCount_ + clusterSize - 1) / clusterSize * clusterSize);
         objects_.place(scene);
+        floating_.place(scene);
         if (solids_.count() > 0) fluid_.keepPlace();
         clock_.resize(1);
         extremes_.resize(1);
@@ -58,7 +59,7 @@ public:
         wake();
         if (std::any_of(state.solids.begin(), state.solids.end(), [](const SolidMotion& m) { return m.place != Vec3d{}; })) letSolidsMove();
         if (solids_.moves()) walls_.upload(wallsAtHome_, {}, {}, fluidCount_);
-        if (solids_.count() > 0) floating_.place(scene_, longestStep(), state.solids);
+        floating_.restart(scene_, state.solids);
         objects_.restart(scene_, state.objects);
         travel_ = 1e30;
         // Density and acceleration of the first picture.
@@ -196,6 +197,7 @@ private:
             constants_ = makeConstants<K>(scene_, extent_);
             objects_.setLaw(scene_, constants_.soundSpeed);
             constants_.maxStep = min(constants_.maxStep, real(objects_.longestStep()));
+            floating_.setSprings(scene_, longestStep());
             makePlan<K>();
         });
         addBuffers();

@@ -109,6 +109,18 @@ TEST(Floating, BlockSlidesToAHalt) {
     EXPECT_LT(length(s.velocity) + length(s.spin), 0.005);
 }
 
+// Springs go with the step, which may become longer while the run goes on.
+TEST(Floating, BlockStaysOnTheFloorWhenStepsBecomeLonger) {
+    Scene scene = sceneOf({"walls.kind=reflect", R"(solids=[{"shape":"block","min":[0.4,0,0.4],"max":[0.8,0.2,0.7],"density":1000}])"});
+    auto simulation = makeSimulation(scene);
+    simulation->step(200);
+    scene.time.step = 0.01f;
+    simulation->apply(scene);
+    const SolidMeasurement s = solidAfter(*simulation, 100);
+    EXPECT_NEAR(s.position.y, 0.1, 0.03);   // softer by the square of twenty
+    EXPECT_LT(length(s.velocity) + length(s.spin), 0.01);
+}
+
 // Solids that meet: momentum is kept, and a stack of them stands.
 TEST(Floating, SolidsPushEachOther) {
     Scene scene = sceneOf({"walls.kind=reflect", "simulation.gravity=0,0,0", "walls.restitution=1",

@@ -149,6 +149,27 @@ TEST(Objects, BondsAgreeWithPlainOnesThatDriveFromOutside) {
     EXPECT_GT(length(driven->state().objects.positions.back() - b.positions.back()), 1e-4);
 }
 
+// A driver that says nothing of velocities comes to water at rest: neighbours are found all the same, and water is pushed out of the way.
+TEST(Objects, DriversNeedNotSayHowFastTheyAre) {
+    struct Plunger final : ObjectDriver {
+        double interval() const override { return 0.002; }
+        void exchange(double, const std::vector<Vec3d>&, std::vector<Vec3d>& positions, std::vector<Vec3d>&) override {
+            for (Vec3d& x : positions) x.y -= 0.002;   // 1 m/s
+        }
+    } plunger;
+    Scene scene = sceneOf({"simulation.gravity=0,0,0", "fluid.sound_speed=20", R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[1,0.4,1]}])",
+                           R"(objects=[{"shape":"block","min":[0.3,0.6,0.3],"max":[0.7,0.8,0.7]}])"});
+    auto simulation = makeSimulation(scene);
+    simulation->drive(&plunger);
+    runUntil(*simulation, 0.35);
+    const double bottom = simulation->state().objects.positions[0].y;
+    EXPECT_LT(bottom, 0.3);   // the fluid was at 0.4
+    for (const Particle& p : simulation->particles())
+        if (p.position.x > 0.3 && p.position.x < 0.7 && p.position.z > 0.3 && p.position.z < 0.7) {
+            EXPECT_TRUE(p.position.y < bottom || p.position.y > bottom + 0.2) << p.position.y;
+        }
+}
+
 // A run that goes on from a state does so with the same bits, torn or not.
 TEST(Objects, RunsGoOnFromTheirStates) {
     Scene scene = sceneOf({"domain.max=1,1,0.4", R"(fluid.bodies=[{"shape":"block","min":[0.3,0.6,0.1],"max":[0.7,0.8,0.3]}])",
