@@ -17,7 +17,7 @@ test: build
 bench: program
 	@$(BUILD)/spindrift bench --baseline .bench-baseline.json $(ARGS)
 
-# All flows with a known answer, about a quarter of an hour; figures and charts into build/validation. make validate ARGS="cavity_re100"
+# All flows with a known answer, about half an hour; figures and charts into build/validation. make validate ARGS="cavity_re100"
 validate: program
 	$(BUILD)/spindrift validate --out $(BUILD)/validation $(ARGS)
 

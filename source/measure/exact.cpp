@@ -61,6 +61,17 @@ void OscillatingDrop::advance(double dt) {
     a = s.a, rate = s.rate;
 }
 
+void SettlingSphere::advance(double dt) {
+    const double ratio = density / fluidDensity, perSpeed = fluidDensity * diameter / viscosity;
+    auto drag = [&](double u) { return u * (1 + 0.15 * std::pow(perSpeed * u, 0.687)); };
+    const int steps = int(std::ceil(dt / 1e-4));
+    for (int k = 0; k < steps; ++k) {
+        const double before = speed;
+        speed += dt / steps * (ratio - 1) * gravity * (1 - drag(speed) / drag(terminal)) / (ratio + 0.5);
+        depth += dt / steps * 0.5 * (before + speed);
+    }
+}
+
 // Gradients as sum V f(x_j) dW/dx, Laplacians as Morris 1997, both scaled so that lines and parabolas are exact, as simulations do.
 LatticeWave latticeWave(Kernel kernel, int dimensions, double support, double kdx) {
     const int n = int(support) + 1, across = dimensions == 3 ? n : 0;

@@ -26,6 +26,14 @@ struct OscillatingDrop {
     void advance(double dt);             // s
 };
 
+// A sphere that sinks from rest and takes half the mass of the fluid in its place along; its drag grows as that of Schiller and Naumann 1933, to its
+// weight at the speed `terminal`. Without what is left of earlier motion (Basset's force), which delays it a little.
+struct SettlingSphere {
+    double diameter, density, fluidDensity, viscosity, gravity, terminal;   // m, kg/m^3, Pa s, m/s^2, m/s
+    double depth = 0, speed = 0;                                            // m, m/s
+    void advance(double dt);                                                // s
+};
+
 // What sums over a kernel's neighbours make of a wave sin(kx) along x on a lattice: k and k^2 as they see them, times dx and dx^2.
 // R / dx is the support.
 struct LatticeWave { double k, k2; };

@@ -215,6 +215,35 @@ void runImpact(const Scene& scene, ValidationRun& run, const std::string& data) 
 }
 
 
+// --- Settling sphere ---
+
+void runSettling(const Scene& scene, ValidationRun& run, double terminal) {
+    const Solid& sphere = scene.solids[0];
+    const double end = 0.65, interval = 0.01;
+    SettlingSphere known{2 * double(sphere.radius), sphere.density, scene.fluid.restDensity, scene.fluid.viscosity, -scene.simulation.gravity.y,
+                         terminal};
+    Stepping sim(scene, run);
+    Curve ours{"computed", {}, {}, Curve::Points}, theirs{"equation of motion", {}, {}, Curve::Line};
+    double last = 0, aside = 0, sunk = 0;
+    for (int k = 0; k * interval <= end && !run.diverged; ++k) {
+        sim.until(k * interval);
+        const Measurement m = sim->measure();
+        known.advance(m.time - last), last = m.time;
+        const SolidMeasurement& s = m.solids[0];
+        sunk = double(sphere.center.y) - s.position.y;
+        aside = std::hypot(s.position.x - double(sphere.center.x), s.position.z - double(sphere.center.z));
+        ours.x.push_back(m.time), ours.y.push_back(-s.velocity.y);
+        theirs.x.push_back(m.time), theirs.y.push_back(known.speed);
+    }
+    // Single impacts of particles are no speed of the flow.
+    const std::vector<double> smooth = runningMean(ours.x, ours.y, 0.05);
+    const double fastest = *std::max_element(smooth.begin(), smooth.end());
+    run.chart = {"", "t, s", "speed, m/s", {theirs, ours}};
+    run.metrics = {{"terminal speed", "%", 100 * (fastest / terminal - 1), targetAt(run.resolution, 40, 10)},
+                   {"sunk after 0.65 s", "%", 100 * (sunk / known.depth - 1), {}},
+                   {"gone aside / d", "", aside / known.diameter, targetAt(run.resolution, 40, 0.1)}};
+}
+
 // --- C14 dam break with a box ---
 
 void runKleefsman(const Scene& scene, ValidationRun& run, const std::string& data) {

@@ -7,6 +7,8 @@ namespace spindrift {
 void runDrop(const Scene&, ValidationRun&);
 // Targets count from a resolution on. With a submerged solid of that volume (m^3) also its lift.
 void runHydrostatic(const Scene&, ValidationRun&, int judgedFrom, double volume = 0);
+// A sphere that sinks; `terminal`: the largest speed of the experiment, m/s.
+void runSettling(const Scene&, ValidationRun&, double terminal);
 void runFront(const Scene&, ValidationRun&, const std::string& data);
 void runImpact(const Scene&, ValidationRun&, const std::string& data);
 void runKleefsman(const Scene&, ValidationRun&, const std::string& data);

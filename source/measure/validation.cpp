@@ -58,6 +58,8 @@ std::vector<ValidationCase> validationCases(const std::string& data) {
         {"taylor_green_re1000", "Taylor-Green vortices, Re 1000, jittered start", "taylor_green", "Taylor and Green 1937", "L / dx",
          {50, 100}, {}, viscous(0.001f), taylorGreen(5, {{100, 0.015}})},
         {"drop", "Oscillating drop, s0 = 1", "drop", "Monaghan and Rafiee 2013, ODE", "R / dx", {25, 50}, {}, spacing, runDrop},
+        {"settling", "Sphere that settles, Re 31.9", "settling", "ten Cate et al. 2002, E4", "0.1 m / dx", {27, 40}, {},
+         [](Scene& s, int n) { s.simulation.spacing = 0.1f / float(n); }, [](const Scene& s, ValidationRun& r) { runSettling(s, r, 0.122); }},
         {"dam_break_front", "Dam-break front, n^2 = 2", "dam_break_front", "Martin and Moyce 1952, a = 2.25 in", "a / dx", {20, 40, 80},
          {20}, spacing, [data](const Scene& s, ValidationRun& r) { runFront(s, r, data); }},
         {"dam_break_pressure", "Dam-break pressures, H = 0.3 m", "dam_break_pressure", "Lobovsky et al. 2014", "H / dx", {40, 80, 160}, {},

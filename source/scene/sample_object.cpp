@@ -14,6 +14,7 @@ namespace {
 struct Nodes {
     int64_t n[3] = {1, 1, 1};
     bool ring = false;
+    int dimensions = 3;
     int64_t cells(int k) const { return ring && k == 0 ? n[0] : std::max<int64_t>(n[k] - 1, 1); }
     bool extends(int k) const { return n[k] > 1; }
     int index(int64_t i, int64_t j, int64_t k) const { return int(((k % n[2]) * n[1] + j % n[1]) * n[0] + (ring ? i % n[0] : i)); }
@@ -25,7 +26,7 @@ struct Nodes {
             extents += extends(d);
             if (extends(d) && !(ring && d == 0)) end |= at[d] == 0 || at[d] == n[d] - 1;
         }
-        return extents < 3 || end;
+        return extents < dimensions || end;
     }
 };
 
@@ -37,6 +38,7 @@ Nodes nodesOf(const Scene& scene, const Object& o) {
     // A wall of one layer, or of as many as it is thick.
     const int64_t layers = o.thickness < 0.75 * a ? 1 : nodesAlong(o.thickness, a);
     Nodes nodes;
+    nodes.dimensions = scene.simulation.dimensions;
     if (o.shape == ObjectShape::Tube) {
         nodes.ring = true;
         nodes.n[0] = std::max<int64_t>(6, std::llround(2 * std::numbers::pi * o.radius / a));

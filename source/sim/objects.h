@@ -30,6 +30,7 @@ struct ObjectParticles {
     ScalarField mass, radius;                       // kg, m
     ScalarField torn;                               // 1: a bond of it is broken
     const int *object, *grip, *firstBond;           // grip -1: nobody holds it; bonds [firstBond[i], firstBond[i + 1])
+    const uint8_t* atSurface;                       // before anything tore
     BondEnd* bonds;
     int* slot;                                      // where the surface has it, or -1
 };
@@ -44,7 +45,7 @@ struct FetchPlaces {
     }
 };
 
-// The surface as it is now, in the order of the last sort.
+// The surface as it is now, in the order of the last sort. What tears open is at the surface from then on.
 struct PlaceSurface {
     using Index = int;
     ObjectParticles o;
@@ -54,8 +55,12 @@ struct PlaceSurface {
         if (id < 0) return storeEmpty(i);
         o.slot[id] = i;
         store(s.position, i, load(o.position, id)), store(s.velocity, i, load(o.velocity, id)), store(s.home, i, load(o.home, id));
-        store(s.radius, i, load(o.radius, id)), store(s.torn, i, load(o.torn, id)), store(s.object, i, real(o.object[id]));
+        const real torn = load(o.torn, id);
+        store(s.radius, i, o.atSurface[id] || torn > 0 ? load(o.radius, id) : outOfReach);
+        store(s.torn, i, torn), store(s.object, i, real(o.object[id]));
     }
+    // m: whose reach is negative meets nobody.
+    static constexpr real outOfReach = real(-1e3);
     // Meets nobody, but lanes compute with it.
     HD void storeEmpty(int i) const {
         const Vector<real> zero{0, 0, 0};
@@ -214,7 +219,7 @@ public:
         fillVectors(home_, sample_.positions);
         fill(mass_, std::vector<real>(sample_.masses.begin(), sample_.masses.end()));
         fill(radius_, std::vector<real>(sample_.radii.begin(), sample_.radii.end()));
-        fill(object_, sample_.objects), fill(grip_, sample_.grips);
+        fill(object_, sample_.objects), fill(grip_, sample_.grips), fill(atSurface_, sample_.atSurface);
         std::vector<Material> materials;
         for (const Object& o : scene.objects) materials.push_back({o.damping, o.breakingStrain});
         fill(materials_, materials), fill(cuts_, scene.cuts);
@@ -247,7 +252,7 @@ public:
         std::vector<Vec3> places;
         std::vector<int> ids;
         for (int i = 0; i < count(); ++i)
-            if (sample_.atSurface[size_t(i)]) places.push_back(sample_.positions[size_t(i)]), ids.push_back(i);
+            if (sample_.atSurface[size_t(i)] || mayTear(scene, i)) places.push_back(sample_.positions[size_t(i)]), ids.push_back(i);
         sorted_.upload(places, {}, {}, ids);
         device_.forEach(sorted_.slots(), FetchPlaces{particles(), sorted_.view()});
     }
@@ -351,7 +356,7 @@ public:
 private:
     ObjectParticles particles() const {
         return {count(), {position_.data()}, {velocity_.data()}, {acceleration_.data()}, {home_.data()}, {mass_.data()}, {radius_.data()}, {torn_.data()},
-                object_.data(), grip_.data(), firstBond_.data(), bonds_.data(), slot_.data()};
+                object_.data(), grip_.data(), firstBond_.data(), atSurface_.data(), bonds_.data(), slot_.data()};
     }
     ObjectSurface surface() const {
         const Particles sorted = sorted_.view();
@@ -398,6 +403,9 @@ private:
         }
         return 1.5 / fastest;   // it is stable to 2
     }
+    bool mayTear(const Scene& scene, int i) const {
+        return !scene.cuts.empty() || scene.objects[size_t(sample_.objects[size_t(i)])].breakingStrain > 0;
+    }
     int padded() const { return (count() + clusterSize - 1) / clusterSize * clusterSize; }
     template <class V> void fillVectors(Buffer<real, Device>& buffer, const std::vector<V>& values) {
         std::vector<real> x(vectorSize(padded()));
@@ -437,6 +445,7 @@ private:
     Buffer<real, Device> target_{device_}, impulse_{device_};
     Buffer<real, Device> position_{device_}, velocity_{device_}, acceleration_{device_}, home_{device_}, mass_{device_}, radius_{device_}, torn_{device_};
     Buffer<int, Device> object_{device_}, grip_{device_}, firstBond_{device_}, slot_{device_};
+    Buffer<uint8_t, Device> atSurface_{device_};
     Buffer<BondEnd, Device> bonds_{device_};
     Buffer<Material, Device> materials_{device_};
     Buffer<Cut, Device> cuts_{device_};

@@ -170,6 +170,25 @@ TEST(Objects, DriversNeedNotSayHowFastTheyAre) {
         }
 }
 
+// A block is cut and its halves are pulled apart: fluid falls between them, not into what was inside.
+TEST(Objects, WhatTearsOpenKeepsFluidOut) {
+    Scene scene = sceneOf({"simulation.dimensions=2", "simulation.spacing=0.02", R"(fluid.bodies=[{"shape":"block","min":[0.2,0.5,0],"max":[0.8,0.7,0.1]}])",
+                           R"(objects=[{"shape":"block","min":[0.2,0,0],"max":[0.8,0.48,0.1],"youngs_modulus":1e6}])", R"(cuts=[{"time":0,"min":[0.49,0,0],"max":[0.51,1,1]}])",
+                           R"(grips=[{"min":[0.1,0,0],"max":[0.28,0.6,0.1],"keyframes":[[0,0,0,0],[0.3,-0.15,0,0]]},
+                                     {"min":[0.72,0,0],"max":[0.9,0.6,0.1],"keyframes":[[0,0,0,0],[0.3,0.15,0,0]]}])"});
+    auto simulation = makeSimulation(scene);
+    runUntil(*simulation, 0.6);
+    double nearest = 1;
+    int between = 0;
+    const ObjectState state = simulation->state().objects;
+    for (const Particle& p : simulation->particles()) {
+        between += std::abs(p.position.x - 0.5) < 0.1 && p.position.y < 0.3;
+        for (const Vec3& x : state.positions) nearest = std::min(nearest, std::hypot(p.position.x - double(x.x), p.position.y - double(x.y)));
+    }
+    EXPECT_GT(between, 50);
+    EXPECT_GT(nearest, 0.5 * 0.02);
+}
+
 // A run that goes on from a state does so with the same bits, torn or not.
 TEST(Objects, RunsGoOnFromTheirStates) {
     Scene scene = sceneOf({"domain.max=1,1,0.4", R"(fluid.bodies=[{"shape":"block","min":[0.3,0.6,0.1],"max":[0.7,0.8,0.3]}])",

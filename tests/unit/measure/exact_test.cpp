@@ -63,5 +63,18 @@ TEST(Exact, DropComesBackAfterItsPeriod) {
     EXPECT_NEAR(most, 1.931852, 1e-4);
 }
 
+// In oil as thick as this drag is as the speed: v = terminal (1 - exp(-t / T)).
+TEST(Exact, SpheresSink) {
+    SettlingSphere sphere{0.01, 2000, 1000, 1000, 10, 0.05};
+    const double T = 0.05 * 2.5 / 10;
+    for (const double t : {0.5 * T, T}) {
+        sphere.advance(0.5 * T);
+        EXPECT_NEAR(sphere.speed, 0.05 * (1 - std::exp(-t / T)), 2e-4);
+    }
+    EXPECT_NEAR(sphere.depth, 0.05 * T * std::exp(-1), 2e-6);
+    sphere.advance(20 * T);
+    EXPECT_NEAR(sphere.speed, 0.05, 1e-6);
+}
+
 }  // namespace
 }  // namespace spindrift
