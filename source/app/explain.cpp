@@ -38,7 +38,7 @@ std::string particlesOf(const Simulation& s) {
 
 int explain(const Scene& scene) {
     const auto simulation = makeSimulation(scene);
-    const int64_t particles = int64_t(simulation->fluidCount()) + simulation->wallCount();
+    const int64_t particles = int64_t(simulation->fluidCount()) + simulation->wallCount() + simulation->objectParticleCount();
     const double support = scene.simulation.support, mebibyte = 1 << 20;
     fmt::print("scene        {}\n", scene.name);
     fmt::print("device       {}\n", simulation->deviceName());

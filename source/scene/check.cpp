@@ -6,6 +6,7 @@
 #include "scene/json.h"
 #include "scene/motion.h"
 #include "scene/particle_file.h"
+#include "scene/sample_object.h"
 #include "scene/schema.h"
 
 #include <fmt/format.h>
@@ -30,6 +31,8 @@ constexpr double GpuBytesPerParticle = 136, GpuBytesPerCarried = 8, GpuBytesPerS
 constexpr double GpuBytesPerLocalStep = 29, GpuBytesPerLocalWall = 1;
 // Mixtures: mass and viscosity, and their sorted copies. Surface tension: a normal and its length.
 constexpr double GpuBytesPerMixed = 16, GpuBytesPerNormal = 20;
+// Of an object in three dimensions, with half of its 18 bonds seen from both ends, as sampled and on the device.
+constexpr double BytesPerObjectParticle = 1200, GpuBytesPerObjectParticle = 320;
 constexpr double HostBytesPerGpuParticle = 100;
 constexpr double GpuBytesAnyway = 64 << 20;
 // Particle ids are 32-bit; walls and fluid together stay clear of the limit.
@@ -267,7 +270,8 @@ int64_t availableMemory() {
 
 void checkCounts(const Scene& scene, ParticleCount count) {
     const std::string what =
-        fmt::format("{} fluid and {} boundary particles", count.fluid, count.walls);
+        fmt::format("{} fluid and {} boundary particles{}", count.fluid, count.walls,
+                    scene.objects.empty() ? "" : fmt::format(", {:.0f} of objects", countObjectParticles(scene)));
     const char* remedy = "raise simulation.spacing or shrink the bodies and the domain";
     if (count.fluid > MostParticles || count.walls > MostParticles - count.fluid)
         throw Error(
@@ -299,10 +303,10 @@ double mostCells(const Scene& scene, double particles) {
 }  // namespace
 
 int64_t estimateMemory(const Scene& scene, ParticleCount count) {
-    const double particles = double(count.fluid) + double(count.walls);
+    const double particles = double(count.fluid) + double(count.walls), objects = BytesPerObjectParticle * countObjectParticles(scene);
     // A GPU's run keeps nothing here, but passes through.
-    if (scene.compute.backend == Backend::Cuda) return int64_t(HostBytesPerGpuParticle * particles);
-    const double bytes = BytesPerParticle * particles + BytesPerCell * mostCells(scene, particles);
+    if (scene.compute.backend == Backend::Cuda) return int64_t(HostBytesPerGpuParticle * particles + objects);
+    const double bytes = BytesPerParticle * particles + BytesPerCell * mostCells(scene, particles) + objects;
     return int64_t(std::min(bytes, 9e18));
 }
 
@@ -322,7 +326,7 @@ int64_t estimateGpuMemory(const Scene& scene, ParticleCount count) {
                          (shiftsParticles(scene) ? GpuBytesPerShifted : 0) + (isMixture(scene) ? GpuBytesPerMixed : 0) +
                          (scene.fluid.surfaceTension > 0 ? GpuBytesPerNormal : 0);
     const double bytes = (GpuBytesPerParticle + more + keptBytes(scene)) * fluid + (GpuBytesPerWall + (local ? GpuBytesPerLocalWall : 0)) * walls +
-                         GpuBytesPerCell * mostCells(scene, fluid + walls) + GpuBytesAnyway;
+                         GpuBytesPerCell * mostCells(scene, fluid + walls) + GpuBytesPerObjectParticle * countObjectParticles(scene) + GpuBytesAnyway;
     return int64_t(std::min(bytes, 9e18));
 }
 

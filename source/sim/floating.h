@@ -12,6 +12,7 @@ namespace spindrift::LANES {
 
 // Where a solid touches, it is made of balls: its outermost boundary particles, as large as they are deep in it. They press like damped springs and rub
 // (Cundall & Strack 1979); a face full of them is as stiff as the step can bear, and overlaps by about a thousandth of a spacing under its weight.
+struct Springs { real rate, damping; };   // 1/s, share of the critical damping: of mass on such a spring
 struct Touch { Vec3d force, torque; HD_OUT void add(const Touch& o) { force = force + o.force, torque = torque + o.torque; } };
 
 // Sums what `solid` feels where its balls touch walls and other solids, and where other solids' balls touch it.
@@ -69,6 +70,13 @@ struct SumTouches {
         const real slip = squareRoot(dot(along, along));
         return addScaled(normal * n, -min(b.damping, b.friction * normal / max(slip, real(1e-12))), along);
     }
+};
+
+struct AddTouch {
+    using Index = int;
+    const Touch* one;
+    Touch* sum;
+    HD void operator()(int) const { sum->add(*one); }
 };
 
 // The momentum that particles lost where a solid stopped them, kg m/s, and the angular momentum about its centre.
@@ -173,7 +181,7 @@ public:
             onHost_.push_back(bodyOf(scene, solid));
             faces_.push_back(solid.floats() ? ballsOfAFace(scene, solid) : 1);
         }
-        loads_.resize(onHost_.size()), touches_.resize(onHost_.size());
+        loads_.resize(onHost_.size()), touches_.resize(onHost_.size()), also_.resize(1);
     }
     // `motions` of a run that goes on; none: solids are at their places in the scene.
     void restart(const Scene& scene, std::vector<SolidMotion> motions) {
@@ -185,6 +193,7 @@ public:
     // How balls press, as live knobs say: a face full of them swings a fifth of a radian in the longest `step` that the run takes, s.
     void setSprings(const Scene& scene, double step) {
         const double rate = 0.2 / step, lost = std::log(std::max(double(scene.walls.restitution), 1e-6)), ratio = -lost / std::hypot(lost, std::numbers::pi);
+        springs_ = {real(rate), real(ratio)};
         for (size_t s = 0; s < onHost_.size(); ++s) {
             if (onHost_[s].mass <= 0) continue;
             onHost_[s].stiffness = real(onHost_[s].mass * rate * rate / faces_[s]);
@@ -197,6 +206,7 @@ public:
         device_.download(motions.data(), motions_.data(), motions.size());
         return motions;
     }
+    Springs springs() const { return springs_; }
     const RigidBody* bodies() const { return bodies_.data(); }
     const SolidMotion* motions() const { return motions_.data(); }
 
@@ -206,6 +216,14 @@ public:
             if (!scene.solids[size_t(s)].floats()) continue;
             device_.reduce(v.walls.slots, sum(s), loads_.data() + s);
             device_.reduce(v.walls.slots, SumTouches{v, home, bodies_.data(), s}, touches_.data() + s);
+        }
+    }
+    // `sum(solid)` is the reduction over `count` of what else touches it.
+    template <class Sum> void addTouches(const Scene& scene, int count, const Sum& sum) {
+        for (size_t s = 0; s < scene.solids.size(); ++s) {
+            if (!scene.solids[s].floats()) continue;
+            device_.reduce(count, sum(int(s)), also_.data());
+            device_.forEach(1, AddTouch{also_.data(), touches_.data() + s});
         }
     }
     Bounces bounces(int slots) {
@@ -264,10 +282,11 @@ private:
     Device& device_;
     std::vector<RigidBody> onHost_;
     std::vector<double> faces_;   // balls of a face of each
+    Springs springs_{};
     Buffer<RigidBody, Device> bodies_{device_};
     Buffer<SolidMotion, Device> motions_{device_};
     Buffer<SolidLoad, Device> loads_{device_};
-    Buffer<Touch, Device> touches_{device_};
+    Buffer<Touch, Device> touches_{device_}, also_{device_};
     Buffer<real, Device> change_{device_}, stoppedBy_{device_};   // of fluid, see Bounces
 };
 

@@ -4,6 +4,7 @@
 #include "scene/motion.h"
 #include "scene/sample_object.h"
 #include "sim/contact.h"
+#include "sim/floating.h"
 #include "sim/object_driver.h"
 #include "sim/object_state.h"
 #include "sim/particle_set.h"
@@ -34,6 +35,15 @@ struct ObjectParticles {
     BondEnd* bonds;
     int* slot;                                      // where the surface has it, or -1
 };
+
+// m, of a ball in a solid; with the direction out of it and the solid's own velocity there.
+HD inline real depthIn(const View& v, const SolidState& s, Vector<real> x, real radius, Vector<real>& n, Vector<real>& velocity) {
+    const Vector<real> arm = imageOf(v.c, x - s.middle);
+    if (dot(arm, arm) > (s.reach + radius) * (s.reach + radius)) return real(-1);
+    const real depth = radius - surface(s, Vector<real>{dot(arm, s.axis[0]), dot(arm, s.axis[1]), dot(arm, s.axis[2])}, n);
+    n = turned(s, n), velocity = s.velocity + cross(s.spin, arm);
+    return depth;
+}
 
 // Positions for the next sort.
 struct FetchPlaces {
@@ -69,7 +79,25 @@ struct PlaceSurface {
     }
 };
 
-// Forces of bonds, damped springs, and of contacts; who is stretched too far breaks, and who is cut. Both ends of a bond see the same.
+// On a particle of an object, N, by the floating solid that it is deepest in, -1: by none. That feels the opposite.
+struct Presses {
+    VectorField force;
+    ScalarField solid;
+};
+struct SumPresses {
+    View v;
+    ObjectParticles o;
+    Presses presses;
+    int solid;
+    HD void addTo(Touch& sum, int i) const {
+        if (load(presses.solid, i) != real(solid)) return;
+        const Vector<real> f = load(presses.force, i), arm = imageOf(v.c, load(o.position, i) - v.solids[solid].centreOfMass);
+        const Vec3d force{-double(f.x), -double(f.y), -double(f.z)};
+        sum.add({force, cross(Vec3d{arm.x, arm.y, arm.z}, force)});
+    }
+};
+
+// Forces of bonds, damped springs, of contacts and of floating solids; who is stretched too far breaks, and who is cut. Both ends of a bond see the same.
 struct StretchBonds {
     using Index = int;
     View v;
@@ -78,12 +106,16 @@ struct StretchBonds {
     const Material* materials;
     const Cut* cuts;
     int cutCount;
+    const RigidBody* bodies;   // null: nothing floats
+    Springs springs;
+    Presses presses;
     HD void operator()(int i) const {
         const Vector<real> x = load(o.position, i), u = load(o.velocity, i);
         const Material material = materials[o.object[i]];
         const real mass = load(o.mass, i);
         Vector<real> force{0, 0, 0};
         if (o.slot[i] >= 0) force = load(contact, o.slot[i]);
+        if (bodies) force = force + pressed(i, x, u, mass);
         for (int b = o.firstBond[i]; b < o.firstBond[i + 1]; ++b) {
             BondEnd& bond = o.bonds[b];
             if (bond.stiffness <= 0) continue;
@@ -102,6 +134,26 @@ struct StretchBonds {
         }
         store(o.acceleration, i, addScaled(bodyForce(v.c, gravityNow(v), x), 1 / mass, force));
     }
+    // As floating solids press each other.
+    HD Vector<real> pressed(int i, Vector<real> x, Vector<real> u, real mass) const {
+        const real radius = load(o.radius, i);
+        real deepest = 0;
+        int by = -1;
+        Vector<real> normal{0, 0, 0}, velocity{0, 0, 0}, force{0, 0, 0};
+        for (int s = 0; s < v.solidCount; ++s) {
+            if (bodies[s].mass <= 0) continue;
+            Vector<real> n{0, 0, 0}, own{0, 0, 0};
+            const real depth = depthIn(v, v.solids[s], x, radius, n, own);
+            if (depth > deepest) deepest = depth, by = s, normal = n, velocity = u - own;
+        }
+        if (by >= 0) {
+            RigidBody both = bodies[by];
+            both.stiffness = mass * springs.rate * springs.rate, both.damping = 2 * springs.damping * mass * springs.rate;
+            force = SumTouches::press(both, deepest, normal, velocity);
+        }
+        store(presses.force, i, force), store(presses.solid, i, real(by));
+        return force;
+    }
     // Since the last step began.
     HD bool isCut(Vector<real> middle) const {
         for (int k = 0; k < cutCount; ++k) {
@@ -115,13 +167,14 @@ struct StretchBonds {
     }
 };
 
-// v += a dt, x += v dt; who is held goes where its grip is. The box and solids keep them inside and out.
+// v += a dt, x += v dt; who is held goes where its grip is. The box and solids that don't float keep them inside and out.
 struct MoveObjects {
     using Index = int;
     View v;
     ObjectParticles o;
     const GripKeys* grips;
     const MotionKey* keys;
+    const RigidBody* bodies;   // null: nothing floats
     HD void operator()(int i) const {
         if (o.grip[i] >= 0) return follow(i, grips[o.grip[i]]);
         const real dt = real(v.state->dt), radius = load(o.radius, i);
@@ -132,7 +185,8 @@ struct MoveObjects {
         c.period.y > 0 ? wrap(x.y, c.period.y) : stop(x.y, u.y, c.low.y + radius, c.high.y - radius);
         if (c.dimensions == 3) c.period.z > 0 ? wrap(x.z, c.period.z) : stop(x.z, u.z, c.low.z + radius, c.high.z - radius);
         else u.z = 0, x.z = load(o.position, i).z;
-        for (int s = 0; s < v.solidCount; ++s) leave(v.solids[s], radius, x, u);
+        for (int s = 0; s < v.solidCount; ++s)
+            if (!bodies || bodies[s].mass <= 0) leave(v.solids[s], radius, x, u);
         store(o.velocity, i, u), store(o.position, i, x);
     }
     HD void follow(int i, GripKeys g) const {
@@ -148,13 +202,10 @@ struct MoveObjects {
     }
     // Stays a radius away from a solid, and loses what speed it has towards it.
     HD void leave(const SolidState& s, real radius, Vector<real>& x, Vector<real>& u) const {
-        const Vector<real> arm = imageOf(v.c, x - s.middle);
-        if (dot(arm, arm) > (s.reach + radius) * (s.reach + radius)) return;
-        Vector<real> n{0, 0, 0};
-        const real depth = radius - surface(s, Vector<real>{dot(arm, s.axis[0]), dot(arm, s.axis[1]), dot(arm, s.axis[2])}, n);
+        Vector<real> n{0, 0, 0}, own{0, 0, 0};
+        const real depth = depthIn(v, s, x, radius, n, own);
         if (depth <= 0) return;
-        n = turned(s, n);
-        const real towards = min(dot(u - s.velocity - cross(s.spin, arm), n), real(0));
+        const real towards = min(dot(u - own, n), real(0));
         x = addScaled(x, depth, n);
         u = subtractScaled(u, towards, n);
     }
@@ -231,6 +282,8 @@ public:
             keys.insert(keys.end(), own.begin(), own.end());
         }
         fill(grips_, grips), fill(keys_, keys);
+        if (std::any_of(scene.solids.begin(), scene.solids.end(), [](const Solid& s) { return s.floats(); }))
+            press_.resize(vectorSize(padded())), pressedBy_.resize(size_t(padded()));
         acceleration_.resize(vectorSize(padded())), torn_.resize(sample_.size()), slot_.resize(sample_.size()), speed_.resize(1);
         bondEnds();
     }
@@ -287,17 +340,20 @@ public:
     }
     int64_t listBytes() const { return objectsNearFluid_.bytes() + fluidNearObjects_.bytes() + objectsNearObjects_.bytes(); }
 
-    // Forces on fluid and objects where they are.
-    void touch(const View& v) {
+    // Forces on fluid and objects where they are. `bodies`: solids, where any float.
+    void touch(const View& v, const RigidBody* bodies, Springs springs) {
         const ContactView c = contactView(v);
         device_.forEach(v.fluid.slots, PushFluid{c});
         device_.forEach(sorted_.slots(), PushObjects{c});
         if (driver_) return;
-        device_.forEach(count(), StretchBonds{v, particles(), {force_.data()}, materials_.data(), cuts_.data(), int(cuts_.size())});
+        device_.forEach(count(), StretchBonds{v, particles(), {force_.data()}, materials_.data(), cuts_.data(), int(cuts_.size()),
+                                               bodies, springs, presses()});
     }
-    void move(const View& v) {
+    // What it does to a solid that floats.
+    SumPresses pressesOn(const View& v, int solid) { return {v, particles(), presses(), solid}; }
+    void move(const View& v, const RigidBody* bodies) {
         if (driver_) device_.forEach(count(), FollowDriver{v.state, particles(), {force_.data()}, {target_.data()}, {impulse_.data()}, arrival_});
-        else device_.forEach(count(), MoveObjects{v, particles(), grips_.data(), keys_.data()});
+        else device_.forEach(count(), MoveObjects{v, particles(), grips_.data(), keys_.data(), bodies});
         placeSurface();
     }
     // From `time` on; null: bonds and grips again.
@@ -406,6 +462,7 @@ private:
     bool mayTear(const Scene& scene, int i) const {
         return !scene.cuts.empty() || scene.objects[size_t(sample_.objects[size_t(i)])].breakingStrain > 0;
     }
+    Presses presses() { return {{press_.data()}, {pressedBy_.data()}}; }
     int padded() const { return (count() + clusterSize - 1) / clusterSize * clusterSize; }
     template <class V> void fillVectors(Buffer<real, Device>& buffer, const std::vector<V>& values) {
         std::vector<real> x(vectorSize(padded()));
@@ -442,7 +499,7 @@ private:
     double exchanged_ = 0, arrival_ = 0;  // s: when it was asked last, and when particles are to be where it said
     double drivenSpeed_ = 0;              // m/s, the most on the way there
     Vec3d origin_;                        // m, the domain's lower corner
-    Buffer<real, Device> target_{device_}, impulse_{device_};
+    Buffer<real, Device> target_{device_}, impulse_{device_}, press_{device_}, pressedBy_{device_};
     Buffer<real, Device> position_{device_}, velocity_{device_}, acceleration_{device_}, home_{device_}, mass_{device_}, radius_{device_}, torn_{device_};
     Buffer<int, Device> object_{device_}, grip_{device_}, firstBond_{device_}, slot_{device_};
     Buffer<uint8_t, Device> atSurface_{device_};

@@ -335,8 +335,13 @@ private:
     }
     bool wallsMove() const { return solids_.moves() || (wallCount_ > 0 && scene_.walls.movingFace != Face::None); }
     template <class Pass> void findLoads() { solids_.template findLoads<Pass>(view()); }
-    void touchObjects() { objects_.touch(view()); }
-    void moveObjects() { objects_.move(view()); }
+    const RigidBody* whatFloats() const { return solids_.floats() ? floating_.bodies() : nullptr; }
+    void touchObjects() {
+        const View v = view();
+        objects_.touch(v, whatFloats(), floating_.springs());
+        if (solids_.floats() && !objects_.isDriven()) floating_.addTouches(scene_, objects_.count(), [&](int solid) { return objects_.pressesOn(v, solid); });
+    }
+    void moveObjects() { objects_.move(view(), whatFloats()); }
     void findSolidForces() {
         (this->*findLoads_)();
         const View v = view();

@@ -1,6 +1,7 @@
 // Elastic objects: they bend as beams do, break when they should, keep momentum, and fluid and objects keep out of each other's way.
 #include "physics/bonded_reference.h"
 #include "physics/cube.h"
+#include "scene/mass.h"
 #include "scene/sample_object.h"
 #include "sim/simulation.h"
 
@@ -187,6 +188,43 @@ TEST(Objects, WhatTearsOpenKeepsFluidOut) {
     }
     EXPECT_GT(between, 50);
     EXPECT_GT(nearest, 0.5 * 0.02);
+}
+
+// A ball flies into a block that nobody holds, off its middle: both together keep their momentum, and the block is pushed on.
+TEST(Objects, FloatingSolidsPushAndArePushed) {
+    Scene scene = sceneOf({"simulation.gravity=0,0,0", "fluid.sound_speed=10",
+                           R"(objects=[{"shape":"block","min":[0.6,0.4,0.4],"max":[0.8,0.7,0.6],"youngs_modulus":1e5}])",
+                           R"(solids=[{"shape":"sphere","center":[0.42,0.5,0.5],"radius":0.1,"density":2000,"velocity":[1,0,0]}])"});
+    auto simulation = makeSimulation(scene);
+    const double mass = massOf(scene, scene.solids[0]).mass;
+    const ObjectSample sample = sampleObjects(scene);
+    auto pushed = [&] {
+        Vec3d sum{0, 0, 0};
+        const ObjectState state = simulation->state().objects;
+        for (size_t i = 0; i < sample.size(); ++i) sum = sum + double(sample.masses[i]) * toDouble(state.velocities[i]);
+        return sum;
+    };
+    runUntil(*simulation, 0.2);
+    const Vec3d ball = mass * simulation->measure().solids[0].velocity;
+    std::printf("momenta: ball %.4f of %.4f, block %.4f %.4f kg m/s\n", ball.x, mass, pushed().x, pushed().y);
+    EXPECT_LT(length(ball + pushed() - Vec3d{mass, 0, 0}), 2e-5 * mass);
+    EXPECT_GT(pushed().x, 0.3 * mass);
+    EXPECT_GT(simulation->measure().solids[0].velocity.x, -1);
+}
+
+// A ball that falls onto a sheet whose rim is held stays above it, and sags with it.
+TEST(Objects, SheetsCarryBalls) {
+    Scene scene = sceneOf({R"(objects=[{"shape":"sheet","min":[0.2,0.4,0.2],"max":[0.8,0.4,0.8],"spacing":0.025,"youngs_modulus":1e5,"thickness":0.01,"damping":0.3}])",
+                           R"(grips=[{"min":[0.1,0.3,0.1],"max":[0.21,0.5,0.9]},{"min":[0.79,0.3,0.1],"max":[0.9,0.5,0.9]}])",
+                           R"(solids=[{"shape":"sphere","center":[0.5,0.55,0.5],"radius":0.1,"density":500}])"});
+    auto simulation = makeSimulation(scene);
+    runUntil(*simulation, 1);
+    const Vec3d ball = simulation->measure().solids[0].position;
+    double lowest = 1;
+    for (const Vec3& x : simulation->state().objects.positions) lowest = std::min(lowest, double(x.y));
+    std::printf("ball at %.4f m, the sheet's lowest at %.4f m\n", ball.y, lowest);
+    EXPECT_LT(lowest, 0.39);
+    EXPECT_NEAR(ball.y - lowest, 0.1 + 0.0125, 0.01);
 }
 
 // A run that goes on from a state does so with the same bits, torn or not.

@@ -121,6 +121,9 @@ TEST(CheckScene, MemoryGrowsWithParticles) {
     EXPECT_GT(coarse, 20250 * 400);
     EXPECT_GT(memory(), 5 * coarse);
     EXPECT_LT(memory(), 9 * coarse);
+    const int64_t before = memory();
+    setKnob(scene, R"(objects=[{"shape":"block","min":[0.1,0.1,0.1],"max":[0.4,0.4,0.4],"spacing":0.005}])");
+    EXPECT_GT(memory(), before + 61 * 61 * 61 * 1000);
 }
 
 }  // namespace
