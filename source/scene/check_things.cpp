@@ -153,6 +153,18 @@ void checkObject(const Scene& scene, size_t index) {
         refuse(path + ".spacing", fmt::format("contacts would reach {:.4g} m, more than the four support radii, {:.4g} m, of who is looked at; lower it", reach, most));
 }
 
+// As of floating solids: springs would throw apart what begins in each other.
+void checkApart(const Scene& scene) {
+    const ObjectSample sample = sampleObjects(scene);
+    for (size_t s = 0; s < scene.solids.size(); ++s) {
+        if (!scene.solids[s].floats()) continue;
+        const Convex shape = convexOf(scene.solids[s], scene.simulation.dimensions);
+        for (size_t i = 0; i < sample.size(); ++i)
+            if (shape.nearest(toDouble(sample.positions[i] + scene.domain.min) - shape.middle).distance < 0)
+                refuse(fmt::format("objects[{}]", sample.objects[i]), fmt::format("begins inside solids[{}], which floats; move them apart", s));
+    }
+}
+
 }  // namespace
 
 void checkMeshes(const Scene& scene) {
@@ -181,6 +193,7 @@ void checkObjects(const Scene& scene) {
         if (!scene.cuts.empty()) refuse("cuts", "there are no objects to cut; add objects or leave cuts out");
         return;
     }
+    checkApart(scene);
     const Formulation f = scene.simulation.formulation;
     if (f == Formulation::Classic || f == Formulation::TransportVelocity)
         refuse("objects", "need fluid that may leave room for them: simulation.formulation wcsph, delta_sph or delta_plus");

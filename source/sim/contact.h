@@ -15,11 +15,11 @@ struct ObjectSurface {
 };
 
 // The law of contact (Cundall & Strack 1979): -k f(d / D) (D - d) along the line, damping of relative velocity, more of it along the surface. f is
-// tabulated: linear between values at equal distances from 0 to D.
+// tabulated, linear between values at equal distances from 0 to D, and kept as the first value and how much steeper it gets at each.
 struct ContactLaw {
-    static constexpr int values = 9;
+    static constexpr int pieces = 8;
     real stiffness, damping, shear;   // N/m, N s/m
-    real table[values];
+    real first, bends[pieces];
     real influence;                   // D of fluid and object / sum of the radii
     real fluidRadius;                 // m
     real perMass;                     // 1/kg, of a fluid particle
@@ -35,12 +35,9 @@ struct ContactView {
 
 // On the first particle, N. `damped`: 1, or 0 where a bond is broken.
 template <class R> HD inline Vector<R> contactForce(const ContactLaw& law, const Pair<R>& p, R reach, Vector<R> velocity, R damped) {
-    const R zero = 0, one = 1, d = squareRoot(p.distance2), overlap = reach - d, at = R(real(ContactLaw::values - 1)) * d / reach;
-    R closer = zero;
-    for (int k = 0; k < ContactLaw::values; ++k) {
-        const R beside = at - R(real(k));
-        closer = mulAdd(R(law.table[k]), max(one - max(beside, zero - beside), zero), closer);
-    }
+    const R zero = 0, one = 1, d = squareRoot(p.distance2), overlap = reach - d, pieces = real(ContactLaw::pieces), at = min(pieces * d / reach, pieces);
+    R closer = law.first;
+    for (int k = 0; k < ContactLaw::pieces; ++k) closer = mulAdd(R(law.bends[k]), max(at - R(real(k)), zero), closer);
     const Vector<R> n = (one / max(d, R(real(1e-12)))) * p.r;
     const Vector<R> along = subtractScaled(velocity, dot(velocity, n), n);
     const Vector<R> force = subtractScaled(subtractScaled((R(law.stiffness) * closer * overlap) * n, damped * R(law.damping), velocity), damped * R(law.shear), along);

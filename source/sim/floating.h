@@ -12,8 +12,10 @@ namespace spindrift::LANES {
 
 // Where a solid touches, it is made of balls: its outermost boundary particles, as large as they are deep in it. They press like damped springs and rub
 // (Cundall & Strack 1979); a face full of them is as stiff as the step can bear, and overlaps by about a thousandth of a spacing under its weight.
-struct Springs { real rate, damping; };   // 1/s, share of the critical damping: of mass on such a spring
 struct Touch { Vec3d force, torque; HD_OUT void add(const Touch& o) { force = force + o.force, torque = torque + o.torque; } };
+
+// What presses: a mass m on such a spring, k = m rate^2, swings at `rate` rad/s and is damped by that share of the critical.
+struct Springs { real rate, damping; };
 
 // Sums what `solid` feels where its balls touch walls and other solids, and where other solids' balls touch it.
 struct SumTouches {

@@ -148,7 +148,8 @@ struct StretchBonds {
         }
         if (by >= 0) {
             RigidBody both = bodies[by];
-            both.stiffness = mass * springs.rate * springs.rate, both.damping = 2 * springs.damping * mass * springs.rate;
+            const real solid = real(both.mass), reduced = mass * solid / (mass + solid);   // either may be the light one
+            both.stiffness = reduced * springs.rate * springs.rate, both.damping = 2 * springs.damping * reduced * springs.rate;
             force = SumTouches::press(both, deepest, normal, velocity);
         }
         store(presses.force, i, force), store(presses.solid, i, real(by));
@@ -349,7 +350,7 @@ public:
         device_.forEach(count(), StretchBonds{v, particles(), {force_.data()}, materials_.data(), cuts_.data(), int(cuts_.size()),
                                                bodies, springs, presses()});
     }
-    // What it does to a solid that floats.
+    // What objects do to a solid that floats; not where a driver moves them.
     SumPresses pressesOn(const View& v, int solid) { return {v, particles(), presses(), solid}; }
     void move(const View& v, const RigidBody* bodies) {
         if (driver_) device_.forEach(count(), FollowDriver{v.state, particles(), {force_.data()}, {target_.data()}, {impulse_.data()}, arrival_});
@@ -399,7 +400,9 @@ public:
         const double m = particleMass(scene), h = supportRadius(scene) / 2, rate = 0.4 * sound / h;
         const double k = knobs.stiffness > 0 ? double(knobs.stiffness) : m * rate * rate, critical = 2 * std::sqrt(k * m);
         law_.stiffness = real(k), law_.damping = real(knobs.damping * critical), law_.shear = real(knobs.shear * critical);
-        for (int n = 0; n < ContactLaw::values; ++n) law_.table[n] = real(std::exp(knobs.steepness * (1 - double(n) / (ContactLaw::values - 1))));
+        auto closer = [&](int n) { return std::exp(knobs.steepness * (1 - double(n) / ContactLaw::pieces)); };
+        law_.first = real(closer(0));
+        for (int n = 0; n < ContactLaw::pieces; ++n) law_.bends[n] = real(closer(n + 1) - closer(n) - (n > 0 ? closer(n) - closer(n - 1) : 0));
         law_.influence = knobs.influence, law_.fluidRadius = scene.simulation.spacing / 2, law_.perMass = real(1 / m);
         float largest = 0;
         for (const float r : sample_.radii) largest = std::max(largest, r);
