@@ -147,9 +147,12 @@ struct StretchBonds {
             if (depth > deepest) deepest = depth, by = s, normal = n, velocity = u - own;
         }
         if (by >= 0) {
+            // One after the other: the particle's spring and the solid's, as one of a face full of those that have room there.
+            auto series = [](real a, real b) { return a * b / max(a + b, real(1e-30)); };
             RigidBody both = bodies[by];
-            const real solid = real(both.mass), reduced = mass * solid / (mass + solid);   // either may be the light one
-            both.stiffness = reduced * springs.rate * springs.rate, both.damping = 2 * springs.damping * reduced * springs.rate;
+            const real across = radius / (both.deepestBall * real(2.0 / 3)), share = min(across * across, real(1));
+            both.stiffness = series(mass * springs.rate * springs.rate, share * both.stiffness);
+            both.damping = series(2 * springs.damping * mass * springs.rate, share * both.damping);
             force = SumTouches::press(both, deepest, normal, velocity);
         }
         store(presses.force, i, force), store(presses.solid, i, real(by));

@@ -212,6 +212,18 @@ TEST(Objects, FloatingSolidsPushAndArePushed) {
     EXPECT_GT(simulation->measure().solids[0].velocity.x, -1);
 }
 
+// A ball as light as air does not leave faster than it came.
+TEST(Objects, LightSolidsBounceOff) {
+    Scene scene = sceneOf({"simulation.gravity=0,0,0", "fluid.sound_speed=10",
+                           R"(objects=[{"shape":"block","min":[0.6,0.3,0.3],"max":[0.8,0.7,0.7],"youngs_modulus":1e5}])",
+                           R"(solids=[{"shape":"block","min":[0.38,0.4,0.4],"max":[0.55,0.6,0.6],"density":0.2,"velocity":[1,0,0]}])"});
+    auto simulation = makeSimulation(scene);
+    runUntil(*simulation, 0.12);
+    const Vec3d velocity = simulation->measure().solids[0].velocity;
+    EXPECT_LT(velocity.x, 0);
+    EXPECT_LT(length(velocity), 1.01);
+}
+
 // A ball that falls onto a sheet whose rim is held stays above it, and sags with it.
 TEST(Objects, SheetsCarryBalls) {
     Scene scene = sceneOf({R"(objects=[{"shape":"sheet","min":[0.2,0.4,0.2],"max":[0.8,0.4,0.8],"spacing":0.025,"youngs_modulus":1e5,"thickness":0.01,"damping":0.3}])",

@@ -111,6 +111,9 @@ TEST(ObjectChecks, SayWhatIsWrong) {
     EXPECT_NE(refusal(R"([{"shape":"block","min":[0.1,0.6,0.1],"max":[0.3,0.61,0.3]}])").find("thicken it"), std::string::npos);
     EXPECT_NE(refusal(R"([{"shape":"block","min":[0.1,0.1,0.1],"max":[0.9,0.9,0.9],"spacing":0.7}])").find("support radii"), std::string::npos);
     EXPECT_NE(refusal(R"([{"shape":"tube","radius":0.1,"thickness":0.3}])").find("no room"), std::string::npos);
+    const std::string ball = R"(solids=[{"shape":"sphere","center":[0.3,0.75,0.3],"radius":0.1,"density":500}])";
+    EXPECT_NE(refusal(R"([{"shape":"block","min":[0.1,0.6,0.1],"max":[0.3,0.8,0.3]}])", {ball}).find("begins inside solids[0]"), std::string::npos);
+    EXPECT_EQ(refusal(R"([{"shape":"block","min":[0.5,0.6,0.1],"max":[0.7,0.8,0.3]}])", {ball}), "");
     EXPECT_NE(refusal("[]", {R"(cuts=[{"time":1}])"}).find("no objects to cut"), std::string::npos);
     EXPECT_NE(refusal("[]", {R"(grips=[{"min":[0,0,0]}])"}).find("no objects to hold"), std::string::npos);
     EXPECT_NE(refusal(block, {R"(grips=[{"min":[0,0,0],"max":[1,1,1],"velocity":[1,0,0],"keyframes":[[0,0,0,0]]}])"}).find("leave velocity out"), std::string::npos);
