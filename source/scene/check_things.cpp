@@ -155,6 +155,7 @@ void checkObject(const Scene& scene, size_t index) {
 
 // As of floating solids: springs would throw apart what begins in each other.
 void checkApart(const Scene& scene) {
+    if (std::none_of(scene.solids.begin(), scene.solids.end(), [](const Solid& s) { return s.floats(); })) return;
     const ObjectSample sample = sampleObjects(scene);
     for (size_t s = 0; s < scene.solids.size(); ++s) {
         if (!scene.solids[s].floats()) continue;

@@ -17,6 +17,15 @@ struct Touch { Vec3d force, torque; HD_OUT void add(const Touch& o) { force = fo
 // What presses: a mass m on such a spring, k = m rate^2, swings at `rate` rad/s and is damped by that share of the critical.
 struct Springs { real rate, damping; };
 
+// m, of a ball in a solid; with the direction out of it and the solid's own velocity there.
+HD inline real depthIn(const View& v, const SolidState& s, Vector<real> x, real radius, Vector<real>& n, Vector<real>& velocity) {
+    const Vector<real> arm = imageOf(v.c, x - s.middle);
+    if (dot(arm, arm) > (s.reach + radius) * (s.reach + radius)) return real(-1);
+    const real depth = radius - surface(s, Vector<real>{dot(arm, s.axis[0]), dot(arm, s.axis[1]), dot(arm, s.axis[2])}, n);
+    n = turned(s, n), velocity = s.velocity + cross(s.spin, arm);
+    return depth;
+}
+
 // Sums what `solid` feels where its balls touch walls and other solids, and where other solids' balls touch it.
 struct SumTouches {
     View v;
@@ -55,15 +64,14 @@ struct SumTouches {
     }
     HD Vector<real> pressOn(const Ball& b, int owner, int other) const {
         const SolidState& s = v.solids[other];
-        const Vector<real> arm = imageOf(v.c, b.position - s.middle);
-        if (dot(arm, arm) > (s.reach + b.radius) * (s.reach + b.radius)) return {0, 0, 0};
-        Vector<real> n{0, 0, 0};
-        const real distance = surface(s, Vector<real>{dot(arm, s.axis[0]), dot(arm, s.axis[1]), dot(arm, s.axis[2])}, n);
+        Vector<real> n{0, 0, 0}, own{0, 0, 0};
+        const real depth = depthIn(v, s, b.position, b.radius, n, own);
+        if (depth <= 0) return {0, 0, 0};
         const RigidBody &mine = bodies[owner], &theirs = bodies[other];
         const RigidBody& softer = mine.stiffness < theirs.stiffness ? mine : theirs;
         RigidBody both = softer;
         both.friction = min(mine.friction, theirs.friction);
-        return press(both, b.radius - distance, turned(s, n), b.velocity - s.velocity - cross(s.spin, arm));
+        return press(both, depth, n, b.velocity - own);
     }
     HD static Vector<real> press(const RigidBody& b, real overlap, Vector<real> n, Vector<real> velocity) {
         if (overlap <= 0) return {0, 0, 0};

@@ -49,11 +49,17 @@ static bool runsOnGpu(const Scene& scene, ParticleCount count) {
 
 std::unique_ptr<Simulation> makeSimdSimulation(const Scene& scene, const RunState& state, int threads) {
     struct InstructionSet { Simd name; int64_t target; decltype(&makeSseSimulation) make; };
-    static constexpr InstructionSet sets[] = {{Simd::Avx512, HWY_AVX3, makeAvx512Simulation},
-#ifndef SPINDRIFT_WITHOUT_AVX2
-                                              {Simd::Avx2, HWY_AVX2, makeAvx2Simulation},
+    static constexpr InstructionSet sets[] = {
+#ifndef SPINDRIFT_WITHOUT_AVX512
+        {Simd::Avx512, HWY_AVX3, makeAvx512Simulation},
 #endif
-                                              {Simd::Sse, HWY_SSSE3, makeSseSimulation}};
+#ifndef SPINDRIFT_WITHOUT_AVX2
+        {Simd::Avx2, HWY_AVX2, makeAvx2Simulation},
+#endif
+#ifndef SPINDRIFT_WITHOUT_SSE
+        {Simd::Sse, HWY_SSSE3, makeSseSimulation},
+#endif
+    };
     const int64_t machine = hwy::SupportedTargets();
     for (const InstructionSet& set : sets)
         if ((scene.compute.simd == Simd::Auto || scene.compute.simd == set.name) && (machine & set.target)) return set.make(scene, state, threads);

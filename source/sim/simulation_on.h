@@ -39,7 +39,7 @@ public:
         solids_.place(scene, wallsAtHome_, solidSizes_, fluidCount_);
         if (wallsMove()) walls_.move();
         if (solids_.floats()) solids_.reserveLoads(walls_.slots()), floating_.bounces((fluidCount_ + clusterSize - 1) / clusterSize * clusterSize);
-        objects_.place(scene);
+        objects_.place(scene, solids_.floats());
         floating_.place(scene);
         if (solids_.count() > 0) fluid_.keepPlace();
         clock_.resize(1);
