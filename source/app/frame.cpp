@@ -1,10 +1,14 @@
 #include "app/frame.h"
 
+#include "app/solid_shapes.h"
 #include "render/color_map.h"
 #include "render/cuda_interop.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace spindrift {
 
@@ -12,16 +16,24 @@ namespace {
 
 Vec3 domainSize(const Scene& scene) { return scene.domain.max - scene.domain.min; }
 
-const char* rangeNote(RangeMode mode) {
-    switch (mode) {
-        case RangeMode::Frame:
-            return "per frame";
-        case RangeMode::Run:
-            return "over the run";
-        case RangeMode::Fixed:
-            return "fixed";
-    }
-    return "";
+// A fluid's name and colour by its density, kg/m^3, and viscosity, Pa s.
+struct Look {
+    const char* name;
+    std::array<uint8_t, 3> color;
+};
+Look lookOf(float density, float viscosity) {
+    if (density < 50) return {"gas", {214, 222, 232}};
+    if (density < 960) return {"oil", {226, 168, 58}};
+    if (density < 1060 && viscosity < 0.05f) return {"water", {58, 130, 214}};
+    if (density < 2000) return {"syrup", {166, 92, 44}};
+    return {"heavy fluid", {150, 156, 172}};
+}
+
+// The same, lighter or darker, for another fluid of that kind.
+std::array<uint8_t, 3> shaded(std::array<uint8_t, 3> color, int turn) {
+    for (uint8_t& c : color)
+        c = uint8_t(turn % 2 ? c + (255 - c) * turn / (turn + 2) : c * 2 / (turn + 2));
+    return color;
 }
 
 }  // namespace
@@ -44,7 +56,7 @@ Quantity quantity(ColorBy by) {
         case ColorBy::Acceleration:
             return {"acceleration", "m/s²"};
         case ColorBy::Fluid:
-            return {"density at rest", "x the scene's"};
+            return {"fluid", ""};
         case ColorBy::Surface:
             return {"surface", ""};
         case ColorBy::Id:
@@ -71,14 +83,27 @@ Frame::Frame(int width, int height, int samples) : renderer_(width, height, samp
 
 void Frame::update(Simulation& simulation, const Scene& scene) {
     fluidCount_ = simulation.fluidCount();
-    wallCount_ = scene.view.showWalls ? simulation.wallCount() : simulation.solidParticleCount();
+    const double time = simulation.clock().time;
+    if (std::exchange(fresh_, false)) begin(scene), begin_ = time;
+    wallCount_ = scene.view.showWalls        ? simulation.wallCount()
+                 : scene.view.solidParticles ? simulation.solidParticleCount()
+                                             : 0;
+    solids_.clear();
+    if (!scene.view.solidParticles)
+        for (const SolidPose& p : simulation.solidPoses())
+            solids_.push_back(
+                {toFloat(p.middle), {toFloat(p.axis[0]), toFloat(p.axis[1]), toFloat(p.axis[2])}});
     objectCount_ = simulation.objectParticleCount();
     vertices_.resize(fluidCount_ + wallCount_ + objectCount_);
     seen_ = write(simulation, scene.view.colorBy);
-    if (scene.view.colorBy != writtenBy_) fresh_ = true;
-    writtenBy_ = scene.view.colorBy;
-    run_ = fresh_ ? seen_ : Range{std::min(run_.min, seen_.min), std::max(run_.max, seen_.max)};
-    fresh_ = false;
+    run_[scene.view.colorBy].add(time, seen_);
+}
+
+void Frame::begin(const Scene& scene) {
+    run_.clear();
+    std::vector<SolidShape> shapes;
+    for (const Solid& solid : scene.solids) shapes.push_back(shapeOf(scene, solid));
+    renderer_.setSolids(std::move(shapes));
 }
 
 Range Frame::write(Simulation& simulation, ColorBy by) {
@@ -95,7 +120,8 @@ Range Frame::write(Simulation& simulation, ColorBy by) {
 }
 
 Range Frame::range(const View& view) const {
-    Range r = view.range == RangeMode::Frame ? seen_ : run_;
+    const auto run = run_.find(view.colorBy);
+    Range r = view.range == RangeMode::Frame || run == run_.end() ? seen_ : run->second.range();
     if (view.range == RangeMode::Fixed) r = {view.rangeMin, view.rangeMax};
     // Fluid at rest must not show its round-off in all colours.
     const float least = 1e-5f * std::max({std::abs(r.min), std::abs(r.max), 1e-3f});
@@ -103,9 +129,45 @@ Range Frame::range(const View& view) const {
     return r;
 }
 
+std::string Frame::rangeNote(const View& view) const {
+    if (view.range == RangeMode::Fixed) return "fixed";
+    if (view.range == RangeMode::Frame) return "per frame";
+    const auto run = run_.find(view.colorBy);
+    if (run == run_.end() || run->second.since() <= begin_) return "over the run";
+    return fmt::format("since {:.3g} s", run->second.since());  // it was not looked at before
+}
+
+std::vector<Swatch> fluidsOf(const Scene& scene) {
+    std::map<float, Swatch> fluids;  // by density
+    std::map<std::string, int> seen;
+    for (const Body& body : scene.fluid.bodies) {
+        const float density = restDensity(scene, body);
+        const Look look = lookOf(density, viscosity(scene, body));
+        if (const auto known = fluids.find(density); known != fluids.end()) {
+            if (!body.name.empty() && known->second.name.find(body.name) == std::string::npos)
+                known->second.name = body.name + ", " + known->second.name;
+            continue;
+        }
+        const std::string name =
+            fmt::format("{}, {:g} kg/m³", body.name.empty() ? look.name : body.name, density);
+        fluids[density] = {name, density / scene.fluid.restDensity,
+                           shaded(look.color, seen[look.name]++)};
+    }
+    std::vector<Swatch> sorted;
+    for (auto& [density, fluid] : fluids) sorted.push_back(std::move(fluid));
+    return sorted;
+}
+
 void Frame::draw(const Scene& scene, std::vector<Ring> rings) {
     const View& view = scene.view;
-    const Range r = range(view);
+    Range r = range(view);
+    std::vector<Swatch> swatches;
+    if (view.colorBy == ColorBy::Fluid) swatches = fluidsOf(scene);
+    if (view.colorBy == ColorBy::Surface)
+        swatches = {{"inside", 0, {40, 78, 150}}, {"surface", 1, {240, 214, 120}}};
+    if (!swatches.empty())
+        r = {swatches.front().value,
+             std::max(swatches.back().value, swatches.front().value + 1e-3f)};
     const Quantity shown = quantity(view.colorBy);
     DrawSettings settings;
     settings.camera = cameraOf(scene, float(width()) / float(height()));
@@ -120,8 +182,10 @@ void Frame::draw(const Scene& scene, std::vector<Ring> rings) {
     settings.map = view.colorMap;
     settings.rangeMin = r.min;
     settings.rangeMax = r.max;
-    settings.legend = LegendText{shown.name, shown.unit, rangeNote(view.range)};
+    settings.legend = LegendText{shown.name, shown.unit, swatches.empty() ? rangeNote(view) : ""};
+    settings.swatches = std::move(swatches);
     settings.rings = std::move(rings);
+    settings.solids = solids_;
     renderer_.draw(vertices_, settings);
 }
 

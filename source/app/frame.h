@@ -1,9 +1,14 @@
 #pragma once
 // The one place that turns a scene and its simulation into a picture; the window and headless share
 // it.
+#include "app/run_range.h"
 #include "render/renderer.h"
 #include "scene/scene.h"
 #include "sim/simulation.h"
+
+#include <map>
+#include <string>
+#include <vector>
 
 namespace spindrift {
 
@@ -21,8 +26,8 @@ public:
     void update(Simulation&, const Scene&);
     // A GPU that steps but doesn't draw hands its vertices over by a copy through the host.
     bool copiesVertices() const { return copied_; }
-    // Forgets the range over the run: after a reset or another scene.
-    void restartRange() { fresh_ = true; }
+    // Forgets the ranges over the run and the solids: after a reset or another scene.
+    void restart() { fresh_ = true; }
 
     // Draws what the last update() wrote; `rings` are marks over it, relative to the domain's lower
     // corner.
@@ -36,13 +41,17 @@ public:
 
 private:
     Range write(Simulation&, ColorBy);
+    void begin(const Scene&);
+    std::string rangeNote(const View&) const;
 
     Renderer renderer_;
     VertexBuffer vertices_;
     int fluidCount_ = 0, wallCount_ = 0, objectCount_ = 0;  // in vertices_
-    ColorBy writtenBy_ = ColorBy::Plain;
-    Range seen_{}, run_{};  // of the last update; of all since restartRange() by this quantity
-    bool fresh_ = true;     // no range yet
+    Range seen_{};                                          // of the last update
+    std::map<ColorBy, RunRange> run_;  // of all since restart(), by what was shown
+    double begin_ = 0;                 // s, the first update's time
+    std::vector<ShapePose> solids_;
+    bool fresh_ = true;  // another run
     bool copied_ = false;
 };
 
@@ -53,6 +62,10 @@ Scene onDrawingDevice(Scene);
 OrbitCamera cameraOf(const Scene&, float aspect);
 // Keeps a moved camera in the scene, so that saving the scene saves the view.
 void keepCamera(Scene&, const OrbitCamera&);
+
+// The fluids of the scene, of different densities, in rising order: names and colours by which they
+// are told apart.
+std::vector<Swatch> fluidsOf(const Scene&);
 
 // How a quantity is named on the legend.
 struct Quantity {

@@ -37,6 +37,12 @@ std::vector<std::string> shippedScenes() {
     return names;
 }
 
+std::string titleOf(const std::string& file) {
+    try {
+        return loadScene(file).name;
+    } catch (const Error&) { return ""; }
+}
+
 std::string findScene(const std::string& name) {
     std::error_code none;
     if (fs::exists(name, none)) return name;
@@ -73,12 +79,12 @@ std::map<std::string, std::string> builtFrom(const Scene& scene) {
 }  // namespace
 
 Scene chooseScene(const std::string& name, const std::vector<KnobChoice>& choices) {
-    const std::string file = name.empty() ? "" : findScene(name);
-    if (!file.empty() && isCheckpoint(file))
+    const std::string file = findScene(name.empty() ? "dam_break" : name);
+    if (isCheckpoint(file))
         throw Error(Exit::Scene, file + ": is a checkpoint; here a scene is wanted");
-    Scene scene = file.empty() ? Scene{} : loadScene(file);
+    Scene scene = loadScene(file);
     applyChoices(scene, choices);
-    checkScene(scene, file.empty() ? "the built-in scene" : file);
+    checkScene(scene, file);
     return scene;
 }
 
@@ -88,7 +94,8 @@ std::unique_ptr<Simulation> startSimulation(const Scene& scene, const std::optio
 
 Start chooseStart(const std::string& name, const std::vector<KnobChoice>& choices) {
     std::error_code none;
-    if (!fs::is_regular_file(name, none) || !isCheckpoint(name)) return {chooseScene(name, choices), {}};
+    if (!fs::is_regular_file(name, none) || !isCheckpoint(name))
+        return {chooseScene(name, choices), {}, findScene(name.empty() ? "dam_break" : name)};
     Checkpoint checkpoint = readCheckpoint(name);
     const auto before = builtFrom(checkpoint.scene);
     applyChoices(checkpoint.scene, choices);
@@ -96,7 +103,7 @@ Start chooseStart(const std::string& name, const std::vector<KnobChoice>& choice
         if (const auto old = before.find(path); old == before.end() || old->second != value)
             throw Error(Exit::Usage, path + ": can't be changed in a run that has begun; start the scene again");
     checkScene(checkpoint.scene, name, countOf(checkpoint.state.particles));
-    return {std::move(checkpoint.scene), std::move(checkpoint.state)};
+    return {std::move(checkpoint.scene), std::move(checkpoint.state), name};
 }
 
 }  // namespace spindrift

@@ -12,6 +12,8 @@ namespace spindrift {
 
 // Names of the scenes in configs/, as findScene takes them.
 std::vector<std::string> shippedScenes();
+// What the scene in a file calls itself; "" when it can't be read.
+std::string titleOf(const std::string& file);
 // The folder that the shipped scenes are in.
 std::string configsFolder();
 
@@ -28,17 +30,18 @@ struct KnobChoice {
 struct Start {
     Scene scene;
     std::optional<RunState> state;
+    std::string file{};  // that it was read from
 };
-// The simulation of a scene, from its beginning or from a state.
 // Sets the knobs, in order. Throws Error (Usage).
 void applyChoices(Scene&, const std::vector<KnobChoice>&);
 
+// The simulation of a scene, from its beginning or from a state.
 std::unique_ptr<Simulation> startSimulation(const Scene&, const std::optional<RunState>&);
 
 // As chooseScene; `name` may also be a checkpoint, whose physics the choices can't change.
 Start chooseStart(const std::string& name, const std::vector<KnobChoice>&);
 
-// The scene of `name` ("" = the built-in default) with the choices applied in their order, checked
+// The scene of `name` ("" = the dam break) with the choices applied in their order, checked
 // as a whole. Throws Error: Usage for a choice's mistake, else what loadScene and checkScene throw.
 Scene chooseScene(const std::string& name, const std::vector<KnobChoice>&);
 

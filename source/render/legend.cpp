@@ -35,48 +35,110 @@ std::vector<double> ticks(double min, double max, int count) {
 std::string tickLabel(double value, double step) {
     const double largest = std::max(std::abs(value), std::abs(step));
     if (value == 0) return "0";
-    if (largest >= 1e6 || largest < 1e-3) return fmt::format("{:.3g}", value);
+    const double digits = step > 0 ? std::ceil(std::log10(largest / step) - 1e-6) + 1
+                                   : 3;  // to tell neighbours apart
+    if (largest >= 1e6 || largest < 1e-3)
+        return fmt::format("{:.{}g}", value, int(std::clamp(digits, 3.0, 9.0)));
     const int decimals = step > 0 ? std::clamp(int(std::ceil(-std::log10(step) - 1e-6)), 0, 6) : 3;
     return fmt::format("{:.{}f}", value, decimals);
 }
 
-void drawLegend(Overlay& overlay, int width, int height, const LegendText& text, ColorMap map,
-                float min, float max) {
-    // Grows with the picture, so that it reads the same at every size and on dense screens.
-    const float unit = std::clamp(std::min(float(height) / 760, float(width) / 760), 0.9f, 4.0f);
-    overlay.textSize(14 * unit);
-    const float pad = 14 * unit, bar = std::min(270 * unit, 0.6f * float(width)), thick = 12 * unit;
-    const float boxWidth = bar + 2 * pad + 12 * unit, boxHeight = 80 * unit;
-    // At the lower left: the tank's near corner stands at the lower right of the first view.
-    const float left = 16 * unit, top = float(height) - boxHeight - 16 * unit;
-    overlay.panel(left, top, boxWidth, boxHeight, 8 * unit, {0.04f, 0.05f, 0.07f, 0.62f});
+std::vector<Mark> fittingMarks(double min, double max, float bar, float overhang,
+                               const std::function<float(std::string_view)>& widthOf) {
+    std::vector<Mark> marks;
+    for (int count = 5; count > 0; --count) {
+        const std::vector<double> values = ticks(min, max, count);
+        const double step = values.size() > 1 ? values[1] - values[0] : 0;
+        marks.clear();
+        bool fits = true;
+        float end = -1e9f;  // of the label before
+        for (double value : values) {
+            const std::string label = tickLabel(value, step);
+            const float half = 0.5f * widthOf(label),
+                        at = bar * (max > min ? float((value - min) / (max - min)) : 0.5f);
+            const float last = std::max(bar + overhang - half, half - overhang);
+            const float middle = std::clamp(at, half - overhang, last);
+            fits &= middle - half > end;
+            end = middle + half + widthOf("0");
+            marks.push_back({value, label, at, middle});
+        }
+        if (fits && !marks.empty()) return marks;
+    }
+    return {{min, tickLabel(min, 0), 0, std::max(0.0f, 0.5f * widthOf(tickLabel(min, 0)) - overhang)}};
+}
 
+namespace {
+
+const Rgba bright{0.94f, 0.95f, 0.97f}, dim{0.66f, 0.69f, 0.74f};
+
+// Grows with the picture, so that it reads the same at every size and on dense screens.
+float unitOf(int width, int height) {
+    return std::clamp(std::min(float(height) / 760, float(width) / 760), 0.9f, 4.0f);
+}
+
+Rgba opaque(const std::array<uint8_t, 3>& c) {
+    return {c[0] / 255.0f, c[1] / 255.0f, c[2] / 255.0f};
+}
+
+// The box, so many units high, its title, and a note where there is room. At the lower left: the
+// tank's near corner stands at the lower right of the first view.
+struct Box {
+    float unit, x, top, bar;
+};
+Box drawBox(Overlay& overlay, int width, int height, float units, const LegendText& text,
+            const std::string& note) {
+    const float unit = unitOf(width, height);
+    overlay.textSize(14 * unit);
+    const float pad = 14 * unit, bar = std::min(270 * unit, 0.6f * float(width)),
+                boxHeight = units * unit;
+    const float left = 16 * unit, top = float(height) - boxHeight - 16 * unit;
+    overlay.panel(left, top, bar + 2 * pad + 12 * unit, boxHeight, 8 * unit,
+                  {0.04f, 0.05f, 0.07f, 0.62f});
     const float x = std::round(left + pad + 6 * unit), titleLine = top + 23 * unit;
-    const Rgba bright{0.94f, 0.95f, 0.97f}, dim{0.66f, 0.69f, 0.74f};
     overlay.text(x, titleLine, text.title, bright);
     overlay.text(x + overlay.textWidth(text.title + " "), titleLine, text.unit, dim);
-    const std::string note = std::string(colorMapName(map)) + ", " + text.note;
     const float titleWidth = overlay.textWidth(text.title + " " + text.unit + " ");
     if (titleWidth + overlay.textWidth(note) <= bar)
         overlay.text(x + bar - overlay.textWidth(note), titleLine, note, dim);
+    return {unit, x, top, bar};
+}
 
+}  // namespace
+
+void drawLegend(Overlay& overlay, int width, int height, const LegendText& text, ColorMap map,
+                float min, float max) {
+    const auto [unit, x, top, bar] = drawBox(overlay, width, height, 80, text,
+                                             std::string(colorMapName(map)) + ", " + text.note);
     const ColorTable table = colorTable(map);
-    const float barTop = std::round(top + 34 * unit);
+    const float barTop = std::round(top + 34 * unit), thick = 12 * unit;
     for (size_t i = 0; i < table.size(); ++i) {
         const float from = std::round(bar * float(i) / 256),
                     to = std::round(bar * float(i + 1) / 256);
-        overlay.rectangle(x + from, barTop, to - from, thick,
-                          {table[i][0] / 255.0f, table[i][1] / 255.0f, table[i][2] / 255.0f});
+        overlay.rectangle(x + from, barTop, to - from, thick, opaque(table[i]));
     }
-    const std::vector<double> marks = ticks(min, max, 5);
-    const double step = marks.size() > 1 ? marks[1] - marks[0] : 0;
-    for (double mark : marks) {
-        const float at = max > min ? float((mark - min) / (max - min)) : 0.5f;
-        const std::string label = tickLabel(mark, step);
-        const float tick = std::round(x + at * bar);
+    const auto widthOf = [&](std::string_view label) { return overlay.textWidth(label); };
+    for (const Mark& mark : fittingMarks(min, max, bar, 16 * unit, widthOf)) {
+        const float tick = std::round(x + mark.at);
         overlay.rectangle(tick - std::round(unit) / 2, barTop + thick,
                           std::max(1.0f, std::round(unit)), 5 * unit, dim);
-        overlay.text(tick - 0.5f * overlay.textWidth(label), barTop + thick + 19 * unit, label,
+        overlay.text(x + mark.middle - 0.5f * overlay.textWidth(mark.label),
+                     barTop + thick + 19 * unit, mark.label, bright);
+    }
+}
+
+void drawLegend(Overlay& overlay, int width, int height, const LegendText& text,
+                const std::vector<Swatch>& swatches) {
+    constexpr size_t most = 12;
+    const size_t shown = std::min(swatches.size(), most);
+    const auto [unit, x, top, bar] =
+        drawBox(overlay, width, height, 36 + 22 * float(shown), text, text.note);
+    for (size_t i = 0; i < shown; ++i) {
+        const float line = top + (46 + 22 * float(i)) * unit;
+        overlay.rectangle(x, std::round(line - 11 * unit), 13 * unit, 13 * unit,
+                          opaque(swatches[i].color));
+        const bool isLast = i + 1 == most && swatches.size() > most;
+        overlay.text(x + 22 * unit, line,
+                     isLast ? fmt::format("and {} more", swatches.size() - i) : swatches[i].name,
                      bright);
     }
 }

@@ -69,7 +69,7 @@ void addRing(std::vector<Segment>& lines, const Ring& ring, const OrbitCamera& c
 
 GlTexture uploadTables() {
     GlTexture texture = makeTexture(GL_TEXTURE_2D);
-    glTextureStorage2D(texture, 1, GL_RGB8, 256, colorMapCount);
+    glTextureStorage2D(texture, 1, GL_RGB8, 256, colorMapCount + 1);
     glTextureParameteri(texture, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     glTextureParameteri(texture, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     for (int map = 0; map < colorMapCount; ++map)
@@ -108,6 +108,7 @@ void Renderer::setSamples(int samples) {
 void Renderer::draw(const VertexBuffer& vertices, const DrawSettings& settings) {
     CHECK(!vertices.mapped());
     uploadFrame(settings);
+    uploadSwatches(settings);
     camera_ = settings.camera;
     glBindFramebuffer(GL_FRAMEBUFFER, target_.drawing());
     glViewport(0, 0, width(), height());
@@ -117,11 +118,14 @@ void Renderer::draw(const VertexBuffer& vertices, const DrawSettings& settings) 
     glClearDepth(1);
     glClear(GL_DEPTH_BUFFER_BIT);
     drawBackground(settings);
+    if (!settings.solids.empty()) solids_.draw(settings.solids);
     drawParticles(vertices, settings);
     drawLines(settings);
     target_.resolve();
     glBindFramebuffer(GL_FRAMEBUFFER, target_.resolved());
-    if (settings.legend && !settings.plain)
+    if (settings.legend && !settings.swatches.empty())
+        drawLegend(overlay_, width(), height(), *settings.legend, settings.swatches);
+    else if (settings.legend && !settings.plain)
         drawLegend(overlay_, width(), height(), *settings.legend, settings.map, settings.rangeMin,
                    settings.rangeMax);
     overlay_.flush(width(), height());
@@ -145,10 +149,26 @@ void Renderer::uploadFrame(const DrawSettings& s) {
         pack(s.domainSize, s.ground ? gridStep(s.domainSize) : 0),
         {0.5f * s.diameter, 0.5f * s.minimumPixels, 0.5f * float(height()) / tangent,
          float(s.fluidCount)},
-        {s.rangeMin, span > 0 ? 1 / span : 0, float(s.map), s.plain ? 1.0f : 0.0f},
+        {s.rangeMin, span > 0 ? 1 / span : 0,
+         s.swatches.empty() ? float(s.map) : float(colorMapCount), s.plain ? 1.0f : 0.0f},
     };
     glNamedBufferSubData(frame_, 0, sizeof block, &block);
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, frame_);
+}
+
+// They are a row of the tables, below the maps.
+void Renderer::uploadSwatches(const DrawSettings& s) {
+    if (s.swatches.empty()) return;
+    ColorTable row;
+    for (size_t i = 0; i < row.size(); ++i) {
+        const float value = std::lerp(s.rangeMin, s.rangeMax, float(i) / float(row.size() - 1));
+        row[i] = std::min_element(s.swatches.begin(), s.swatches.end(),
+                                  [&](const Swatch& a, const Swatch& b) {
+                                      return std::abs(a.value - value) < std::abs(b.value - value);
+                                  })
+                     ->color;
+    }
+    glTextureSubImage2D(tables_, 0, 0, colorMapCount, 256, 1, GL_RGB, GL_UNSIGNED_BYTE, row.data());
 }
 
 // The ground belongs to the background: seen from above everything stands in front of it.
@@ -189,6 +209,16 @@ void Renderer::drawLines(const DrawSettings& s) {
     std::vector<Segment> lines;
     const float width = lineWidth(height());
     if (s.outline) addBox(lines, s.domainSize, width, {0.62f, 0.70f, 0.82f, 0.5f});
+    for (size_t i = 0; i < s.solids.size(); ++i)
+        for (const auto& [from, to] : solids_.shapes()[i].edges) {
+            // A little nearer to the eye than the faces that meet there.
+            const auto lifted = [&](Vec3 own) {
+                const Vec3 at = s.solids[i].at(own);
+                return at + 0.002f * (s.camera.eye() - at);
+            };
+            lines.push_back(
+                {pack(lifted(from), width), pack(lifted(to)), {0.10f, 0.11f, 0.14f, 0.8f}});
+        }
     const auto edges = GLsizei(lines.size());
     for (const Ring& ring : s.rings) addRing(lines, ring, s.camera, width);
     if (lines.empty()) return;

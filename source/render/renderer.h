@@ -9,6 +9,7 @@
 #include "render/legend.h"
 #include "render/occlusion.h"
 #include "render/overlay.h"
+#include "render/solids.h"
 #include "render/vertex_buffer.h"
 
 #include <optional>
@@ -33,9 +34,12 @@ struct DrawSettings {
     float minimumPixels = 0;  // particles are never drawn smaller than this
     bool plain = false;       // one colour instead of the table
     ColorMap map = ColorMap::Viridis;
+    std::vector<Swatch>
+        swatches;  // instead of the table: each value has the colour of the nearest of them
     float rangeMin = 0, rangeMax = 1;  // values at the ends of the table
     std::optional<LegendText> legend;
     std::vector<Ring> rings;
+    std::vector<ShapePose> solids;  // of the shapes that are drawn: all of setSolids, or none
 };
 
 class Renderer {
@@ -47,6 +51,7 @@ public:
     int width() const { return target_.width(); }
     int height() const { return target_.height(); }
 
+    void setSolids(std::vector<SolidShape> shapes) { solids_.upload(std::move(shapes)); }
     void draw(const VertexBuffer&, const DrawSettings&);
 
     Image image() const { return target_.image(); }
@@ -62,6 +67,7 @@ private:
     void drawParticles(const VertexBuffer&, const DrawSettings&);
     void drawSpheres(int count, bool second);
     void drawLines(const DrawSettings&);
+    void uploadSwatches(const DrawSettings&);
 
     int samples_;  // as asked for; the driver may give fewer
     Framebuffer target_;
@@ -71,6 +77,7 @@ private:
     GlBuffer frame_, segments_;
     GlTexture tables_;
     Overlay overlay_;
+    SolidTriangles solids_;
     OrbitCamera camera_;  // of the last picture
 };
 

@@ -1,5 +1,7 @@
 #include "scene/relax.h"
 
+#include "core/task.h"
+
 #include <omp.h>
 
 #include <algorithm>
@@ -151,6 +153,7 @@ void relax(std::vector<Vec3d>& positions, const Region& region, double spacing, 
     };
     for (Vec3d& x : positions) x = into(x);
     for (int step = 0; step < Steps; ++step) {
+        tell("packing particles", double(step) / Steps);
         crowd.fill(positions, own);
 #pragma omp parallel for schedule(dynamic, 256) num_threads(team)
         for (size_t i = 0; i < positions.size(); ++i) next[i] = moved(positions[i]);

@@ -27,6 +27,7 @@ enum class StartPlaces { Lattice, Relaxed };
 enum class StartPressure { None, Hydrostatic };
 enum class Face { None, XMin, XMax, YMin, YMax, ZMin, ZMax };
 enum class RangeMode { Frame, Run, Fixed };
+enum class StirMode { Drag, Attract, Repel };
 enum class ProbeKind { Point, Line, Height, Front };
 enum class Order { Mean, Linear };
 enum class ObjectShape { Block, Sheet, Tube, Shell };
@@ -54,6 +55,7 @@ struct Body : Form {
     float restDensity = 0;                      // kg/m^3 at rest, 0 = the fluid's; other ones make a mixture
     float viscosity = -1;                       // Pa s, -1 = the fluid's
     StartPressure pressure = StartPressure::None;   // where a field has its own, that is added
+    std::string name{};                         // of its fluid, in the legend; "" = by its density
 };
 
 // Where a solid is at one time, relative to its place in the scene.
@@ -125,6 +127,7 @@ struct Window {
     int width = 1280, height = 800;             // logical pixels
     float pointSize = 0;                        // px: particles are never drawn smaller than this diameter
     int samples = 4;                            // multisampling, 1 = off
+    float interfaceScale = 0;                   // of text and panel, 0 = as the display asks for
 };
 
 struct Compute {
@@ -210,14 +213,24 @@ struct Camera {
     Vec3 target{0, 0, 0};                       // m, used when automatic_target is off
 };
 
+// What the mouse does to the fluid around it.
+struct Stirrer {
+    StirMode mode = StirMode::Drag;
+    float strength = 1;                         // of the hold that it has on the fluid
+    float radius = 0;                           // m, 0 = an eighth of the domain's shortest side
+};
+
 struct View {
     ColorBy colorBy = ColorBy::Velocity;
     ColorMap colorMap = ColorMap::Coolwarm;
     RangeMode range = RangeMode::Run;
     float rangeMin = 0, rangeMax = 1;           // in the unit of the coloured quantity, used by fixed
     bool showWalls = false;                     // draws boundary particles
+    bool solidParticles = false;                // draws particles of solids instead of their shapes
     bool showOutline = true, showGround = true;
     float particleScale = 1;                    // drawn diameter / spacing
+    float speed = 1;                            // simulated / wall time that the window aims at
+    Stirrer stir;
     Camera camera;
 };
 

@@ -51,6 +51,8 @@ constexpr auto enumNames(Face) {
 }
 constexpr auto enumNames(RangeMode) { return std::array{"frame", "run", "fixed"}; }
 
+constexpr auto enumNames(StirMode) { return std::array{"drag", "attract", "repel"}; }
+
 constexpr auto enumNames(ProbeKind) { return std::array{"point", "line", "height", "front"}; }
 constexpr auto enumNames(ObjectShape) { return std::array{"block", "sheet", "tube", "shell"}; }
 constexpr auto enumNames(Order) { return std::array{"mean", "linear"}; }
@@ -79,6 +81,9 @@ template <class B, class Visitor>
 requires std::is_same_v<std::remove_const_t<B>, Body>
 void visitMember(B& b, const std::string& at, Visitor&& visit) {
     visitForm(b, at, visit);
+    visit(at + ".name", b.name, 
+          Knob{"", 0, 0, "of its fluid, in the legend of a mixture; without one its density names it",
+               Restart});
     visit(at + ".rest_density", b.restDensity,
           Knob{"kg/m^3", 0, 1e5f, "of this body's fluid, 0 = fluid.rest_density; with another one fluids lie above each other", Restart});
     visit(at + ".viscosity", b.viscosity, Knob{"Pa s", -1, 1000, "of this body's fluid, -1 = fluid.viscosity", Restart});
@@ -254,6 +259,8 @@ void visitProgram(S& s, Visitor&& visit) {
           Knob{"px", 0, 255, "particles are never drawn smaller than this"});
     visit("window.samples", s.window.samples,
           Knob{"", 1, 16, "anti-aliasing samples, 1 = off", Restart});
+    visit("window.interface_scale", s.window.interfaceScale,
+          Knob{"", 0, 4, "size of text and panel, 0 = as the display's density asks for"});
 
     visit("compute.backend", s.compute.backend, Knob{"", 0, 0, "where to compute", Restart});
     visit("compute.precision", s.compute.precision,
@@ -395,7 +402,22 @@ void visitPicture(S& s, Visitor&& visit) {
     visit("view.show_walls", v.showWalls, Knob{"", 0, 0, "draws the boundary particles"});
     visit("view.show_outline", v.showOutline, Knob{"", 0, 0, "draws the edges of the box"});
     visit("view.show_ground", v.showGround, Knob{"", 0, 0, "draws the ground"});
+    visit("view.solid_particles", v.solidParticles,
+          Knob{"", 0, 0, "draws the particles of solids instead of their shapes"});
     visit("view.particle_scale", v.particleScale, Knob{"", 0.05f, 5, "drawn diameter / spacing"});
+    visit("view.speed", v.speed,
+          Knob{"x real time", 0.01f, 10,
+               "how fast the window plays: simulated seconds for one of the clock's"});
+
+    auto& stir = v.stir;
+    visit("view.stir.mode", stir.mode,
+          Knob{"", 0, 0,
+               "what Ctrl + drag does to the fluid: drags it along, pulls it to the mouse or "
+               "pushes it away"});
+    visit("view.stir.strength", stir.strength, Knob{"", 0.05f, 10, "how firmly"});
+    visit("view.stir.radius", stir.radius,
+          Knob{"m", 0, 1e4f,
+               "how far around the mouse, 0 = an eighth of the domain's shortest side"});
 
     auto& c = v.camera;
     visit("view.camera.yaw", c.yaw, Knob{"degrees", -360, 360, "turn about the vertical"});

@@ -451,7 +451,8 @@ struct ResistMotion {
     }
 };
 
-// The mouse drags the fluid inside a sphere towards its own velocity, strongest in the middle.
+// The mouse drags the fluid inside a sphere towards its own velocity, strongest in the middle, or
+// pulls it to the middle.
 struct StirFluid {
     using Index = Quad;
     View v;
@@ -461,8 +462,9 @@ struct StirFluid {
         const Vector<R> drag{v.c.stirVelocity.x, v.c.stirVelocity.y, v.c.stirVelocity.z};
         const Vector<R> d = load(v.fluid.position, i) - center, u = load(v.fluid.velocity, i);
         const R weight = max(R(1) - dot(d, d) * R(1 / (v.c.stirRadius * v.c.stirRadius)), R(0));
-        const R share = weight * R(min(real(1), real(30) * real(v.state->dt)));
-        store(v.fluid.velocity, i, addScaled(u, share, drag - u));
+        const R share = weight * R(min(real(1), v.c.stirRate * real(v.state->dt)));
+        const Vector<R> wanted = subtractScaled(drag, R(v.c.stirPull), d);
+        store(v.fluid.velocity, i, addScaled(u, share, wanted - u));
     }
 };
 

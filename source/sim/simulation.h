@@ -8,6 +8,7 @@
 #include "sim/run_state.h"
 #include "sim/solid_motion.h"
 
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -31,6 +32,9 @@ struct SolidMeasurement {
     Vec3d torque;                          // N m, about its middle
 };
 
+// Where a solid is: its middle, m from the domain's lower corner, and its axes, of length 1.
+struct SolidPose { Vec3d middle, axis[3]; };
+
 // What a run says of itself. Energies in J, momentum in kg m/s, lengths in m; sums in double precision.
 struct Measurement {
     double time = 0;                 // s
@@ -53,8 +57,17 @@ struct Measurement {
 // One particle as the picker and tests see it. Position in world coordinates.
 struct Particle { int id = -1; Vec3d position, velocity, acceleration; double density = 0, pressure = 0; };
 
-// A sphere of fluid dragged along by the mouse. World coordinates; off when radius is 0.
-struct Stir { Vec3 center; float radius = 0; Vec3 velocity; };
+// A sphere of fluid that the mouse drags along, or pulls to its middle. World coordinates; off when
+// radius is 0.
+struct Stir {
+    Vec3 center;
+    float radius = 0;     // m
+    Vec3 velocity;        // m/s
+    float rate = 30;      // 1/s, at which fluid takes over its velocity
+    float pull = 0;       // 1/s: velocity towards the middle for each metre from it; negative: away
+    // The most that it gives to fluid, m/s.
+    double speed() const { return length(velocity) + std::abs(pull) * radius; }
+};
 
 class Simulation {
 public:
@@ -67,6 +80,8 @@ public:
     virtual void stir(const Stir&) = 0;
     // Until the next call the solid is pulled to where the mouse wants it, whatever moves it otherwise; none: let go. In local steps nobody can.
     virtual void hold(const Hold&) = 0;
+    // Where each of the scene's solids is now.
+    virtual std::vector<SolidPose> solidPoses() = 0;
     // The solid whose surface is within a spacing of a point (m, world coordinates), or -1.
     virtual int solidAt(Vec3d point) = 0;
     // From now on somebody else's engine moves the elastic objects (object_driver.h); null: they move by themselves again. Not owned.

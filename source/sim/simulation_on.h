@@ -82,6 +82,14 @@ public:
         hold_ = {h.solid, h.target - scene_.domain.min};
         refresh(scene_);
     }
+    std::vector<SolidPose> solidPoses() override {
+        if (solids_.moves()) moveSolids();
+        std::vector<SolidPose> poses;
+        auto wide = [](Vector<real> a) { return Vec3d{a.x, a.y, a.z}; };
+        for (const SolidState& s : solids_.download())
+            poses.push_back({wide(s.middle), {wide(s.axis[0]), wide(s.axis[1]), wide(s.axis[2])}});
+        return poses;
+    }
     int solidAt(Vec3d point) override {
         const std::vector<SolidState> solids = solids_.download();
         const Vec3d x = point - toDouble(scene_.domain.min);
@@ -434,8 +442,10 @@ private:
     void chooseMoment() {
         device_.reduce(fluid_.slots(), FindMotion{fluid_.view(), clock_.data()}, localSteps_.motion());
         device_.forEach(1, ChooseMoment{view(), localSteps_.motion(), fluidCount_});
-        if constexpr (keepsLists)
-            travel_ += clock_.data()->dt * std::max({clock_.data()->speed, double(length(stir_.velocity)), double(solids_.largestSpeed())});
+        if constexpr (keepsLists) {
+            const double solids = solids_.largestSpeed();
+            travel_ += clock_.data()->dt * std::max({clock_.data()->speed, stir_.speed(), solids});
+        }
     }
     void wake() {
         if (!hasLocalSteps()) return;
@@ -456,14 +466,16 @@ private:
         findExtremes<false>();
         if constexpr (!keepsLists) return;
         const StepState& clock = *clock_.data();
-        const double start = std::max<double>(clock.speed, length(stir_.velocity)), pull = std::sqrt(extremes_.data()->acceleration2);
+        const double start = std::max<double>(clock.speed, stir_.speed());
+        const double pull = std::sqrt(extremes_.data()->acceleration2);
         const double own = 0.5 * (start + clock.dt * pull) + (shifts() ? 0.75 * clock.speed : 0);
         travel_ += clock.dt * std::max(own, 0.5 * double(solids_.largestSpeed()));
     }
     // Of any particle at the end of a step of length dt, stirring included.
     double largestSpeed(double dt) const {
         const Extremes& e = *extremes_.data();
-        const double own = std::max<double>(std::sqrt(e.speed2), length(stir_.velocity)) + dt * std::sqrt(e.acceleration2);
+        const double most = std::max<double>(std::sqrt(e.speed2), stir_.speed());
+        const double own = most + dt * std::sqrt(e.acceleration2);
         return std::max(shifts() ? 1.5 * own : own, solids_.largestSpeed());   // the shift is at most half as fast
     }
 
@@ -492,7 +504,7 @@ private:
         if (allDue_) v.fluid.due = v.walls.due = nullptr;
         v.c.stirCenter = toVector(stir_.center - scene_.domain.min);
         v.c.stirVelocity = toVector(stir_.velocity);
-        v.c.stirRadius = stir_.radius;
+        v.c.stirRadius = stir_.radius, v.c.stirRate = stir_.rate, v.c.stirPull = stir_.pull;
         return v;
     }
     // picture.h

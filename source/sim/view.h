@@ -151,7 +151,7 @@ struct Constants {
     real maxStep;                                 // s, what is asked for and what forces but pressure allow
     real restSpeed;                               // below that share of the speed of sound fluid may rest, 0: nothing rests
     Vector<real> stirCenter, stirVelocity;
-    real stirRadius;
+    real stirRadius, stirRate, stirPull;          // m, 1/s, 1/s (Stir)
 };
 
 // A solid now. Its shape is convex (scene/convex.h), in its own axes and relative to its middle; that of a mesh is a field of distances in its bounding box.

@@ -39,6 +39,7 @@ public:
     void apply(const Scene& scene) override { s_.apply(scene); }
     void stir(const Stir& stir) override { s_.stir(stir); }
     void hold(const Hold& hold) override { s_.hold(hold); }
+    std::vector<SolidPose> solidPoses() override { return s_.solidPoses(); }
     int solidAt(Vec3d point) override { return s_.solidAt(point); }
     void drive(ObjectDriver* driver) override { s_.drive(driver); }
     void stopAt(double time) override { s_.stopAt(time); }

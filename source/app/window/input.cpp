@@ -2,6 +2,8 @@
 
 #include <imgui.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -10,14 +12,14 @@ namespace spindrift {
 const std::vector<Control> controls = {
     {"Space", "run, pause"},
     {"Right", "one step"},
-    {"R", "reset"},
+    {"R", "start again, as it was loaded"},
     {"Left drag", "orbit"},
     {"Middle drag, Shift + left drag", "pan"},
     {"Wheel", "zoom to the cursor"},
     {"Home", "first view"},
     {"Ctrl + drag", "stir the fluid, or drag an obstacle"},
     {"Ctrl + wheel", "radius of the stirrer"},
-    {"Double click", "pick a particle"},
+    {"Double click", "pick a particle or an obstacle"},
     {"1  2  3  4", "plain, velocity, pressure, density"},
     {"B", "boundary particles"},
     {"G", "CPU or GPU"},
@@ -25,9 +27,11 @@ const std::vector<Control> controls = {
     {"F", "full screen"},
     {"F12", "screenshot"},
     {"Ctrl + S", "checkpoint"},
+    {"Ctrl + Z", "undo the last change of a knob"},
+    {"-  +", "slower, faster"},
     {"H, F1", "this help"},
-    {"Esc", "leave"},
-    {"Drop a JSON file", "load a scene"},
+    {"Esc", "close what is open, then leave"},
+    {"Drop a file", "load a scene or a checkpoint"},
 };
 
 namespace {
@@ -78,12 +82,7 @@ void dragMouse(Ui& ui, float dx, float dy) {
 void turnWheel(Ui& ui, float notches) {
     const Scene& scene = ui.player.scene;
     const float diagonal = length(scene.domain.max - scene.domain.min);
-    if (ui.held & KMOD_CTRL) {
-        const float wanted = ui.stirRadius * std::pow(1.15f, notches);
-        ui.stirRadius = std::clamp(wanted, scene.simulation.spacing, diagonal);
-        ui.stale = true;
-        return;
-    }
+    if (ui.held & KMOD_CTRL) return ui.setStirRadius(ui.stirRadius() * std::pow(1.15f, notches));
     OrbitCamera camera = ui.camera();
     const Vec3 anchor = ui.frame.surfaceAt(int(ui.mouseX), int(ui.mouseY))
                             .value_or(camera.onPlane(ui.mouseX, ui.mouseY, float(ui.area.width),
@@ -94,9 +93,24 @@ void turnWheel(Ui& ui, float notches) {
     ui.moveCamera(camera);
 }
 
+// Halves or doubles, within what the knob allows.
+void changeSpeed(Ui& ui, float factor) {
+    float& speed = ui.player.scene.view.speed;
+    speed = std::clamp(speed * factor, 0.01f, 10.0f);
+    ui.say(fmt::format("plays at {:.3g} x real time, if it can", speed));
+}
+
+// While the program asks whether to leave.
+void answer(Ui& ui, SDL_Keycode key) {
+    if (key == SDLK_RETURN || key == SDLK_y || key == SDLK_q) ui.quit = true;
+    if (key == SDLK_s) ui.quit = ui.saveCheckpoint();
+    if (key == SDLK_s || key == SDLK_n || key == SDLK_ESCAPE) ui.asking = false;
+}
+
 }  // namespace
 
 void pressKey(Ui& ui, SDL_Keycode key) {
+    if (ui.asking) return answer(ui, key);
     View& view = ui.player.scene.view;
     switch (key) {
         case SDLK_SPACE:
@@ -139,6 +153,18 @@ void pressKey(Ui& ui, SDL_Keycode key) {
         case SDLK_s:
             if (ui.held & KMOD_CTRL) ui.saveCheckpoint();
             break;
+        case SDLK_z:
+            if (ui.held & KMOD_CTRL) ui.undo();
+            break;
+        case SDLK_MINUS:
+        case SDLK_KP_MINUS:
+            changeSpeed(ui, 0.5f);
+            break;
+        case SDLK_PLUS:
+        case SDLK_EQUALS:
+        case SDLK_KP_PLUS:
+            changeSpeed(ui, 2);
+            break;
         case SDLK_h:
         case SDLK_F1:
             ui.showHelp = !ui.showHelp;
@@ -147,7 +173,7 @@ void pressKey(Ui& ui, SDL_Keycode key) {
             ui.showPanel = !ui.showPanel;
             break;
         case SDLK_ESCAPE:
-            ui.quit = true;
+            ui.escape();
             break;
         default:
             break;
@@ -162,7 +188,7 @@ void handleEvent(Ui& ui, const SDL_Event& event) {
     };
     switch (event.type) {
         case SDL_QUIT:
-            ui.quit = true;
+            ui.leave();
             break;
         case SDL_DROPFILE:
             ui.load(event.drop.file);

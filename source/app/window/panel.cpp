@@ -3,9 +3,17 @@
 #include "app/scene_choice.h"
 #include "app/window/input.h"
 
+#include "scene/mass.h"
+
 #include <imgui.h>
+#include <imgui_internal.h>
+#include <imgui_stdlib.h>
 
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
 
 namespace spindrift {
 
@@ -26,12 +34,72 @@ void row(const char* name, fmt::format_string<T...> format, T&&... values) {
     text(format, std::forward<T>(values)...);
 }
 
+void readTitles(Ui& ui) {
+    if (!ui.scenes.empty()) return;
+    for (const std::string& name : shippedScenes()) {
+        const std::string file = findScene(name);
+        ui.scenes.push_back({name, file, titleOf(file)});
+    }
+}
+
+// Scenes and checkpoints of the folder of what is typed.
+void folderList(Ui& ui) {
+    namespace fs = std::filesystem;
+    ImGui::SetNextItemWidth(-1);
+    const bool entered =
+        ImGui::InputTextWithHint("##file", "a path: scene or checkpoint", &ui.typedFile,
+                                 ImGuiInputTextFlags_EnterReturnsTrue);
+    const fs::path typed = ui.typedFile;
+    std::error_code none;
+    const fs::path folder = fs::is_directory(typed, none) ? typed
+                            : typed.has_parent_path()     ? typed.parent_path()
+                                                          : fs::path(".");
+    std::vector<fs::path> found;
+    for (const auto& entry :
+         fs::directory_iterator(folder, fs::directory_options::skip_permission_denied, none)) {
+        const std::string kind = entry.path().extension().string();
+        const bool hidden = entry.path().filename().string().starts_with(".");
+        if (!hidden && (entry.is_directory(none) || kind == ".json" || kind == ".h5"))
+            found.push_back(entry.path());
+    }
+    std::sort(found.begin(), found.end());
+    ImGui::BeginChild("folder", {0, 7 * ImGui::GetTextLineHeightWithSpacing()}, true);
+    const fs::path here = fs::absolute(folder, none).lexically_normal();
+    const fs::path parent =
+        here.has_filename() ? here.parent_path() : here.parent_path().parent_path();
+    if (ImGui::Selectable("..", false, ImGuiSelectableFlags_DontClosePopups))
+        ui.typedFile = (parent / "").string();
+    for (const fs::path& path : found) {
+        const bool inside = fs::is_directory(path, none);
+        if (!ImGui::Selectable((path.filename().string() + (inside ? "/" : "")).c_str(), false,
+                               ImGuiSelectableFlags_DontClosePopups))
+            continue;
+        ui.typedFile = inside ? (path / "").string() : path.string();
+        if (!inside) ui.load(ui.typedFile), ImGui::CloseCurrentPopup();
+    }
+    ImGui::EndChild();
+    if (entered && !ui.typedFile.empty()) ui.load(ui.typedFile), ImGui::CloseCurrentPopup();
+}
+
 void sceneList(Ui& ui) {
     ImGui::SetNextItemWidth(-1);
-    if (!ImGui::BeginCombo("##scene", ui.player.scene.name.c_str(), ImGuiComboFlags_HeightLarge))
-        return;
-    for (const std::string& name : ui.scenes)
-        if (ImGui::Selectable(name.c_str())) ui.load(findScene(name));
+    ui.popupOpen =
+        ImGui::BeginCombo("##scene", ui.player.scene.name.c_str(), ImGuiComboFlags_HeightLargest);
+    if (!ui.popupOpen) return;
+    readTitles(ui);
+    ImGui::BeginChild("shipped", {0, 14 * ImGui::GetTextLineHeightWithSpacing()});
+    for (const SceneEntry& scene : ui.scenes) {
+        const bool current = scene.file == ui.player.file();
+        if (ImGui::Selectable(fmt::format("{}##{}", scene.title, scene.name).c_str(), current))
+            ui.load(scene.file), ImGui::CloseCurrentPopup();
+        if (current && ImGui::IsWindowAppearing()) ImGui::SetScrollHereY();
+        ImGui::SameLine(0.55f * ImGui::GetContentRegionMax().x);
+        ImGui::TextDisabled("%s", scene.name.c_str());
+    }
+    ImGui::EndChild();
+    ImGui::Separator();
+    folderList(ui);
+    if (ui.closePopups) ImGui::CloseCurrentPopup();
     ImGui::EndCombo();
 }
 
@@ -46,15 +114,45 @@ void transport(Ui& ui) {
     if (ImGui::Button("Save checkpoint", {-1, 0})) ui.saveCheckpoint();
 }
 
-void status(const Ui& ui) {
+void rememberPopup(Ui& ui) {
+    ui.popupOpen =
+        ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+    if (std::exchange(ui.closePopups, false) && ui.popupOpen) ImGui::ClosePopupToLevel(0, true);
+}
+
+// How fast it plays, in large letters, and how fast it is asked to.
+void speed(Ui& ui) {
+    const double factor = ui.player.realTimeFactor();
+    float& wanted = ui.player.scene.view.speed;
+    const bool late = ui.player.running && factor < 0.9 * double(wanted);
+    ImGui::SetWindowFontScale(1.5f);
+    const std::string shown = ui.player.running ? fmt::format("{:.2g} x", factor) : "paused";
+    ImGui::TextColored(late || !ui.player.running ? amber : ImGui::GetStyle().Colors[ImGuiCol_Text],
+                       "%s", shown.c_str());
+    ImGui::SetWindowFontScale(1);
+    ImGui::SameLine();
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextDisabled("real time; wanted");
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(-1);
+    ImGui::SliderFloat("##speed", &wanted, 0.01f, 10, "%.3g x",
+                       ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip(
+            "view.speed, keys - and +: slow motion and fast motion\nin amber: this computer can't "
+            "keep up");
+}
+
+void status(Ui& ui) {
     const Measurement& m = ui.player.measurement();
-    row("device", "{}", ui.device.substr(0, ui.device.find(',')));
-    row("particles", "{} + {} walls", ui.fluidCount, ui.wallCount);
+    speed(ui);
     row("time", "{:.4f} s", m.time);
-    row("time step", "{:.3g} ms", 1e3 * m.dt);
     row("steps", "{}, {:.0f} a second", m.steps, ui.player.stepsPerSecond());
-    row("speed", "{:.2f} x real time", ui.player.realTimeFactor());
+    row("time step", "{:.3g} ms", 1e3 * m.dt);
+    row("particles", "{} + {} walls", ui.fluidCount, ui.wallCount);
     row("fastest particle", "{:.3g} m/s", m.maxSpeed);
+    row("speed of sound", "{:.3g} m/s", m.soundSpeed);
+    row("device", "{}", ui.device.substr(0, ui.device.find(',')));
     row("drawing", "{:.1f} ms a picture", ui.drawMs);
 }
 
@@ -68,13 +166,14 @@ void passTimes(const Ui& ui) {
     row("together", "{:.3f} ms", sum);
 }
 
-void curves(const Ui& ui) {
+void curves(Ui& ui) {
     const History& h = ui.player.history();
     plot("energy", "J", h.time,
          {{"total", h.total, IM_COL32(240, 240, 245, 255)},
           {"kinetic", h.kinetic, IM_COL32(96, 180, 255, 255)},
           {"potential", h.potential, IM_COL32(255, 190, 90, 255)}});
-    plot("density error", "", h.time, {{"", h.densityError, IM_COL32(120, 220, 150, 255)}});
+    plot("mean density error", "", h.time, {{"", h.densityError, IM_COL32(120, 220, 150, 255)}});
+    if (ImGui::Button("Save curves as CSV", {-1, 0})) ui.saveCurves();
 }
 
 // Disabled with its reason as tooltip, as long as there is no GPU.
@@ -90,15 +189,38 @@ bool section(const char* title, bool open = false) {
     return ImGui::CollapsingHeader(title, open ? ImGuiTreeNodeFlags_DefaultOpen : 0);
 }
 
+// What a knob that is 0 leaves to the program.
+std::string inForce(const Ui& ui, const std::string& path) {
+    const Scene& scene = ui.player.scene;
+    const double sound = ui.player.measurement().soundSpeed;
+    const int gamma =
+        scene.fluid.equationOfState == EquationOfState::Linear ? 1 : scene.fluid.gamma;
+    if (path == "fluid.sound_speed") return fmt::format("{:.4g} m/s", sound);
+    if (path == "fluid.stiffness")
+        return fmt::format("{:.4g} Pa", scene.fluid.restDensity * sound * sound / gamma);
+    if (path == "view.camera.distance") return fmt::format("{:.3g} m", ui.camera().distance);
+    if (path == "view.stir.radius") return fmt::format("{:.3g} m", ui.stirRadius());
+    if (path == "window.interface_scale") return fmt::format("{:.3g}", ui.scale);
+    if (path == "contact.stiffness") return "what the step bears";
+    return "";
+}
+
 void knobs(Ui& ui) {
-    bool physics = false;
-    if (section("View", true) && editKnobs(ui.player.scene, "view")) ui.stale = ui.rewrite = true;
-    if (section("Camera") && editKnobs(ui.player.scene, "view.camera")) ui.stale = true;
-    if (section("Fluid", true)) physics |= editKnobs(ui.player.scene, "fluid");
-    if (section("Forces")) physics |= editKnobs(ui.player.scene, "simulation");
-    if (section("Walls")) physics |= editKnobs(ui.player.scene, "walls");
-    if (section("Time")) physics |= editKnobs(ui.player.scene, "time");
-    if (section("Window") && editKnobs(ui.player.scene, "window")) ui.stale = true;
+    Scene& scene = ui.player.scene;
+    const auto edited = [&](const char* title, const std::string& group, bool open = false) {
+        return section(title, open) &&
+               editKnobs(scene, ui.player.loadedScene(), group,
+                         [&](const std::string& path) { return inForce(ui, path); });
+    };
+    if (edited("View", "view", true)) ui.stale = ui.rewrite = true;
+    if (edited("Stirrer: Ctrl + drag", "view.stir")) ui.stale = true;
+    if (edited("Camera", "view.camera")) ui.stale = true;
+    bool physics = edited("Fluid", "fluid", true);
+    physics |= edited("Forces", "simulation");
+    physics |= edited("Walls", "walls");
+    if (!scene.objects.empty()) physics |= edited("Contact", "contact");
+    physics |= edited("Time", "time");
+    if (edited("Window", "window")) ui.stale = true;
     if (physics) ui.player.knobsChanged();
 }
 
@@ -130,13 +252,26 @@ void panel(Ui& ui, int windowHeight) {
     }
     ImGui::TextDisabled("H shows keys and mouse");
     ImGui::End();
+    rememberPopup(ui);
 }
 
-void help(const Ui& ui) {
+// In the middle of the picture.
+void beginBox(const Ui& ui, const char* name) {
     ImGui::SetNextWindowPos(
         {float(ui.area.x) + 0.5f * float(ui.area.width), 0.5f * float(ui.area.height)},
         ImGuiCond_Always, {0.5f, 0.5f});
-    ImGui::Begin("help", nullptr, note);
+    ImGui::Begin(name, nullptr, note);
+}
+
+// Why the run stands still; "" while it doesn't.
+std::string standstillOf(const Ui& ui) {
+    if (!ui.player.halted.empty()) return ui.player.halted;
+    return ui.player.running ? "" : "paused: Space runs, Right steps once";
+}
+std::string messageOf(const Ui& ui) { return uiTime() < ui.message.until ? ui.message.text : ""; }
+
+void help(const Ui& ui) {
+    beginBox(ui, "help");
     if (ImGui::BeginTable("keys", 2, ImGuiTableFlags_SizingFixedFit))
         for (const Control& control : controls) {
             ImGui::TableNextColumn();
@@ -148,24 +283,65 @@ void help(const Ui& ui) {
     ImGui::End();
 }
 
-// What the run says at the picture's upper left: why it stands still, and the last message.
 void notes(Ui& ui) {
-    const bool message = uiTime() < ui.message.until;
-    if (ui.player.running && !message) return;
+    if (notesOf(ui).empty()) return;
     const float edge = margin * ui.scale;
     ImGui::SetNextWindowPos({float(ui.area.x) + edge, edge});
     ImGui::SetNextWindowSizeConstraints({0, 0}, {float(ui.area.width) - 2 * edge, 1e4f});
     ImGui::Begin("notes", nullptr, note);
     ImGui::PushTextWrapPos(float(ui.area.width) - 4 * edge);
-    if (!ui.player.halted.empty())
-        ImGui::TextColored(red, "%s", ui.player.halted.c_str());
-    else if (!ui.player.running)
-        ImGui::TextColored(amber, "paused: Space runs, Right steps once");
-    if (message && ui.message.error)
-        ImGui::TextColored(red, "%s", ui.message.text.c_str());
-    else if (message)
-        ImGui::TextUnformatted(ui.message.text.c_str());
+    const std::string standing = standstillOf(ui), said = messageOf(ui);
+    if (!standing.empty())
+        ImGui::TextColored(ui.player.halted.empty() ? amber : red, "%s", standing.c_str());
+    if (!said.empty() && ui.message.error)
+        ImGui::TextColored(red, "%s", said.c_str());
+    else if (!said.empty())
+        ImGui::TextUnformatted(said.c_str());
     ImGui::PopTextWrapPos();
+    ImGui::End();
+}
+
+void question(Ui& ui) {
+    const Measurement& m = ui.player.measurement();
+    beginBox(ui, "question");
+    text("This run is not saved: {} steps, {:.4g} s.", m.steps, m.time);
+    if (ImGui::Button("Save and leave (S)")) pressKey(ui, SDLK_s);
+    ImGui::SameLine();
+    if (ImGui::Button("Leave (Enter)")) pressKey(ui, SDLK_RETURN);
+    ImGui::SameLine();
+    if (ImGui::Button("Stay (Esc)")) pressKey(ui, SDLK_ESCAPE);
+    ImGui::End();
+}
+
+void pickedSolid(const Ui& ui) {
+    const size_t index = size_t(ui.pickedSolid);
+    const auto& solids = ui.player.measurement().solids;
+    if (ui.pickedSolid < 0 || index >= solids.size()) return;
+    const SolidMeasurement& s = solids[index];
+    const Scene& scene = ui.player.scene;
+    const bool flat = scene.simulation.dimensions == 2;
+    const char* perMetre = flat ? "/m" : "";
+    const double depth =
+        flat ? scene.simulation.spacing : 1;  // measured on a slab of that thickness
+    const auto vec = [](Vec3d v) {
+        return fmt::format("{:.4g}  {:.4g}  {:.4g}", v.x + 0.0, v.y + 0.0, v.z + 0.0);
+    };
+    const float edge = margin * ui.scale;
+    ImGui::SetNextWindowPos({float(ui.area.x + ui.area.width) - edge, edge}, ImGuiCond_Always,
+                            {1, 0});
+    ImGui::SetNextWindowSize({350 * ui.scale, 0});
+    ImGui::Begin("solid", nullptr, note);
+    ImGui::TextColored(red, "%s", s.name.c_str());
+    row("middle", "{} m", vec(s.position));
+    row("velocity", "{} m/s", vec(s.velocity));
+    row("spin", "{} rad/s", vec(s.spin));
+    row("force", "{} N{}", vec((1 / depth) * (s.pressureForce + s.viscousForce)), perMetre);
+    row("of it viscous", "{} N{}", vec((1 / depth) * s.viscousForce), perMetre);
+    row("torque", "{} N m{}", vec((1 / depth) * s.torque), perMetre);
+    if (scene.solids[index].floats())
+        row("mass", "{:.4g} kg{}", massOf(scene, scene.solids[index]).mass / depth, perMetre);
+    else
+        row("mass", "none: it moves as prescribed");
     ImGui::End();
 }
 
@@ -190,11 +366,30 @@ void pickedParticle(Ui& ui) {
 
 int panelWidth(const Ui& ui) { return ui.showPanel ? int(width * ui.scale) : 0; }
 
+std::string notesOf(const Ui& ui) { return standstillOf(ui) + messageOf(ui); }
+
+void showLoading(const Task& task, float x, float y) {
+    ImGui::SetNextWindowPos({x, y}, ImGuiCond_Always, {0.5f, 0.5f});
+    ImGui::Begin("loading", nullptr, note);
+    text("{} ...", task.doing.load());
+    ImGui::ProgressBar(float(task.share), {20 * ImGui::GetFontSize(), 0});
+    ImGui::TextDisabled("Esc cancels");
+    ImGui::End();
+}
+
 void showPanel(Ui& ui, int windowHeight) {
     if (ui.showPanel) panel(ui, windowHeight);
+    else
+        rememberPopup(ui);
     notes(ui);
     pickedParticle(ui);
+    pickedSolid(ui);
     if (ui.showHelp) help(ui);
+    if (ui.asking) question(ui);
+    const Area& a = ui.area;
+    if (const Task* task = ui.player.loading())
+        showLoading(*task, float(a.x) + 0.5f * float(a.width), 0.3f * float(a.height));
+    if (!ImGui::IsAnyItemActive()) ui.settleKnobs();
 }
 
 }  // namespace spindrift

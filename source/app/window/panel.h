@@ -2,16 +2,23 @@
 // The Dear ImGui side: panel, help, messages.
 #include "app/window/ui.h"
 
+#include <functional>
+
 namespace spindrift {
 
-// Dark theme and a readable font; `scale` grows with the screen's density.
+// Dark theme and a readable font, both so many times their usual size. Again whenever that changes.
 void setUpPanel(float scale);
 // The panel's width in the window's pixels, 0 when it's hidden.
 int panelWidth(const Ui&);
+// How far a run is being made ready, around this place of the window.
+void showLoading(const Task&, float x, float y);
 // Everything that ImGui shows this frame.
 void showPanel(Ui&, int windowHeight);
 
-// Curves over `x`, drawn from 0 up to their largest value.
+// What the run says at the picture's upper left; "" when nothing.
+std::string notesOf(const Ui&);
+
+// Curves over `x`, with axes that name round numbers.
 struct Curve {
     const char* name;
     const std::vector<float>& y;
@@ -19,7 +26,12 @@ struct Curve {
 };
 void plot(const char* title, const char* unit, const std::vector<float>& x, std::vector<Curve>);
 
-// A widget for each live knob of a group ("view.camera", "fluid"); true when one was changed.
-bool editKnobs(Scene&, const std::string& group);
+// What a knob that is 0 stands for, by its path: "31.3 m/s"; "" when just 0.
+using InForce = std::function<std::string(const std::string& path)>;
+// A widget for each live knob of a group ("view.camera", "fluid"), marked where it differs from
+// what was loaded, and greyed where it has no effect; true when one was changed.
+bool editKnobs(Scene&, const Scene& loaded, const std::string& group, const InForce&);
+// "kg/m^3" -> "kg/m³"
+std::string shownUnit(std::string unit);
 
 }  // namespace spindrift

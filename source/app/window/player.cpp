@@ -2,10 +2,12 @@
 
 #include "core/error.h"
 #include "measure/checkpoint.h"
+#include "scene/check.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 namespace spindrift {
 
@@ -42,40 +44,58 @@ void History::dropAfter(double t) {
     for (std::vector<float>* curve : {&time, &kinetic, &potential, &total, &densityError}) curve->resize(keep);
 }
 
-Player::Player(Start start) {
-    auto simulation = startSimulation(start.scene, start.state);
-    begin(std::move(start.scene), std::move(simulation));
-    initialCamera_ = scene.view.camera;
+Stir stirOf(const Stirrer& stirrer, Vec3 center, float radius, Vec3 velocity) {
+    constexpr float rate = 30, pull = 10;  // 1/s, at strength 1
+    const float sign = stirrer.mode == StirMode::Drag      ? 0.0f
+                       : stirrer.mode == StirMode::Attract ? 1.0f
+                                                           : -1.0f;
+    return {center, radius, velocity, rate * stirrer.strength, sign * pull * stirrer.strength};
 }
 
-void Player::begin(Scene s, std::unique_ptr<Simulation> simulation) {
-    stepper_ = std::make_unique<Stepper>(std::move(simulation), s);
-    scene = std::move(s);
+Player::Player(Loaded loaded) { begin(std::move(loaded), false); }
+
+void Player::begin(Loaded loaded, bool again) {
+    const RunState state = loaded.simulation->state();
+    stepper_ = std::make_unique<Stepper>(std::move(loaded.simulation), loaded.start.scene);
+    const Camera camera = scene.view.camera;
+    scene = asked_ = inForce_ = loaded.start.scene;
+    if (again) scene.view.camera = camera;
+    origin_ = std::move(loaded.start);
+    start_ = state.start;
     measurement_ = stepper_->measurement();
     history_ = {};
     history_.add(measurement_);
+    changes_.clear();
     halted.clear();
     notice.clear();
     culprits.clear();
-    lag_ = rateTime_ = stepsPerSecond_ = realTimeFactor_ = 0;
-    rateSteps_ = 0;
+    lag_ = stepsPerSecond_ = realTimeFactor_ = 0;
+    rateTime_ = inForceSince_ = measurement_.time;
+    rateSteps_ = firstSteps_ = measurement_.steps;
+    savedSteps_ = 0;
     stepsLeft_ = scene.compute.steps;
     lastProceed_ = rateSince_ = wallTime();
-    applyWanted_ = stepWanted_ = stirWanted_ = holdWanted_ = collected_ = false;
+    applyWanted_ = underWay_ = stepWanted_ = stirWanted_ = holdWanted_ = collected_ = false;
     ++generation_;
 }
 
 void Player::load(const std::string& file) {
-    Start next = chooseStart(file, {});
-    auto simulation = startSimulation(next.scene, next.state);
-    begin(std::move(next.scene), std::move(simulation));
-    initialCamera_ = scene.view.camera;
+    loader_ = std::make_unique<Loader>([file] { return chooseStart(file, {}); });
+    resets_ = false;
 }
 
 void Player::reset() {
-    Scene next = scene;
-    auto simulation = makeSimulation(next);
-    begin(std::move(next), std::move(simulation));
+    Start again = origin_;
+    again.scene.compute.backend = scene.compute.backend;  // it may have been switched
+    loader_ = std::make_unique<Loader>([again = std::move(again)] { return again; });
+    resets_ = true;
+}
+
+bool Player::takeLoaded() {
+    if (!loader_ || !loader_->done()) return false;
+    const std::unique_ptr<Loader> loader = std::move(loader_);
+    begin(loader->take(), resets_);
+    return true;
 }
 
 void Player::switchBackend(Backend backend) {
@@ -94,7 +114,10 @@ void Player::stepOnce() {
 
 void Player::saveCheckpoint(const std::string& file) {
     while (stepper_->busy()) stepper_->wait(1);
-    writeCheckpoint(file, scene, culprits.empty() ? stepper_->simulation().state() : stepper_->guard().lastGood());
+    const RunState state =
+        culprits.empty() ? stepper_->simulation().state() : stepper_->guard().lastGood();
+    writeCheckpoint(file, scene, state);
+    savedSteps_ = std::max(state.clock.steps, measurement_.steps);
 }
 
 void Player::halt(const std::string& why) {
@@ -126,7 +149,12 @@ void Player::takeMeasurement() {
         if (stepsLeft_ == 0) running = false;
     }
     HealthGuard& guard = stepper_->guard();
-    if (stepper_->finding() == HealthGuard::Finding::WentBack) history_.dropAfter(measurement_.time);
+    const bool wentBack = stepper_->finding() == HealthGuard::Finding::WentBack;
+    if (wentBack) {  // rates count what has been gained since
+        rateTime_ -= before - measurement_.time, rateSteps_ -= stepsBefore - measurement_.steps;
+        inForceSince_ = std::min(inForceSince_, measurement_.time);
+        history_.dropAfter(measurement_.time);
+    }
     history_.add(measurement_);
     if (stepper_->finding() == HealthGuard::Finding::GaveUp) {
         culprits = guard.culprits();
@@ -134,25 +162,61 @@ void Player::takeMeasurement() {
     } else if (!guard.said().empty()) {
         notice = guard.said();
     }
+    if (wentBack) takeBackChangesAfter(measurement_.time);
 }
 
+// The run has come into trouble: what was changed since the state that it goes on from is to blame.
+void Player::takeBackChangesAfter(double time) {
+    const auto first = std::find_if(changes_.begin(), changes_.end(),
+                                    [&](const Change& c) { return c.until >= time; });
+    if (first == changes_.end()) return;
+    const std::string paths = joined(changedKnobs(scene, first->before, KnobKind::Physics));
+    copyKnobs(scene, first->before, KnobKind::Physics);
+    asked_ = scene;
+    changes_.erase(first, changes_.end());
+    underWay_ = true;
+    if (!paths.empty()) notice += "; the run could not follow, so it was put back: " + paths;
+}
+
+// What was asked for becomes what the run is on its way to, if it makes sense.
 void Player::meetRequests() {
+    constexpr size_t mostChanges = 64;
+    if (applyWanted_ && !changedKnobs(scene, asked_, KnobKind::Physics).empty()) try {
+            const Simulation& s = stepper_->simulation();
+            checkScene(scene, "panel", ParticleCount{s.fluidCount(), s.wallCount()});
+            changes_.push_back({measurement_.time, std::exchange(asked_, scene)});
+            if (changes_.size() > mostChanges) changes_.erase(changes_.begin());
+            underWay_ = true;
+        } catch (const Error& error) {
+            copyKnobs(scene, asked_, KnobKind::Physics);
+            notice = error.what();
+        }
     try {
-        if (applyWanted_) stepper_->guard().apply(scene);
+        followKnobs();
     } catch (const Error& error) { halt(error.what()); }
     if (stirWanted_) stepper_->simulation().stir(stir_);
     if (holdWanted_) stepper_->simulation().hold(hold_);
     applyWanted_ = stirWanted_ = holdWanted_ = false;
 }
 
+void Player::followKnobs() {
+    if (!underWay_) return;
+    inForce_ = towards(asked_, inForce_, start_, measurement_.time - inForceSince_);
+    inForceSince_ = measurement_.time;
+    stepper_->guard().apply(inForce_);
+    underWay_ = !changedKnobs(inForce_, asked_, KnobKind::Physics).empty();
+    if (!changes_.empty()) changes_.back().until = measurement_.time;
+}
+
 void Player::proceed(double budget) {
     const double now = wallTime();
-    lag_ = std::min(lag_ + (running ? now - lastProceed_ : 0), longestLag);
+    const double speed = scene.view.speed;
+    lag_ = std::min(lag_ + (running ? speed * (now - lastProceed_) : 0), speed * longestLag);
     lastProceed_ = now;
     const double dt = measurement_.dt > 0 ? measurement_.dt : 1e-4;
     auto due = int64_t(std::ceil(lag_ / dt));
     if (stepsLeft_ > 0) due = std::min(due, stepsLeft_);
-    if (!halted.empty() || !(stepWanted_ || (running && due > 0))) return;
+    if (loader_ || !halted.empty() || !(stepWanted_ || (running && due > 0))) return;
     stepper_->start(stepWanted_ ? Batch{1, 0} : Batch{due, budget});
     stepWanted_ = collected_ = false;
 }

@@ -1,9 +1,12 @@
 #pragma once
 // Plays a scene in real time where it can: run, pause, step, reset, load. Knows nothing of pixels.
-#include "app/scene_choice.h"
+#include "app/window/live_knobs.h"
+#include "app/window/loader.h"
 #include "app/window/stepper.h"
 #include "scene/scene.h"
 
+#include <algorithm>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -19,11 +22,13 @@ private:
     double least_ = 0;  // s between samples
 };
 
+// What the mouse does there, by the knobs: dragged along at its velocity (m/s), or pulled to it, or
+// pushed away.
+Stir stirOf(const Stirrer&, Vec3 center, float radius, Vec3 velocity);
+
 class Player {
 public:
-    // Throws Error when the scene can't run.
-    explicit Player(Start);
-    explicit Player(Scene s) : Player(Start{std::move(s), {}}) {}
+    explicit Player(Loaded);
 
     Scene scene;  // edit live knobs, then call knobsChanged()
     bool running = true;
@@ -32,6 +37,7 @@ public:
     std::vector<Particle> culprits;  // of a run that was stopped by itself
 
     // Requests; they are met when the simulation is at hand (collect).
+    // Knobs that make no sense are put back, with a notice.
     void knobsChanged() { applyWanted_ = true; }
     void stepOnce();
     void stir(const Stir& s) {
@@ -43,10 +49,17 @@ public:
         holdWanted_ = true;
     }
 
-    // Blocks until the step at hand is done. Throws Error; then nothing has changed.
+    // Makes another scene, or the same as it was loaded, ready in the background; the run stands
+    // still meanwhile.
     void load(const std::string& file);
     void reset();
-    // Goes on from where the run stands, on the other device.
+    // What is being made ready; null: nothing.
+    const Task* loading() const { return loader_ ? &loader_->progress() : nullptr; }
+    void cancelLoading() { loader_.reset(); }
+    // True when the new run has begun. Throws Error when it can't; then nothing has changed.
+    bool takeLoaded();
+    // Goes on from where the run stands, on the other device. Blocks until the step at hand is
+    // done. Throws Error; then nothing has changed.
     void switchBackend(Backend);
 
     // True when the simulation is at hand: the requests are met, measurement() is new, simulation()
@@ -64,23 +77,43 @@ public:
     const Measurement& measurement() const { return measurement_; }
     // Writes where the run stands, or its last good state when it was stopped by itself. Throws Error (Output).
     void saveCheckpoint(const std::string& file);
+    // Whether steps would be lost if it ended now.
+    bool unsaved() const { return measurement_.steps > std::max(firstSteps_, savedSteps_); }
     const History& history() const { return history_; }
-    const Camera& initialCamera() const { return initialCamera_; }
+    const Scene& loadedScene() const { return origin_.scene; }
+    const std::string& file() const { return origin_.file; }
     double stepsPerSecond() const { return stepsPerSecond_; }
     double realTimeFactor() const { return realTimeFactor_; }  // simulated / wall time
     int generation() const { return generation_; }             // grows with every new run
 
 private:
-    void begin(Scene, std::unique_ptr<Simulation>);
+    // Knobs that were changed, what they were before, and until when (s simulated) the run was on
+    // its way to them.
+    struct Change {
+        double until;
+        Scene before;
+    };
+
+    void begin(Loaded, bool again);
     void takeMeasurement();
+    void takeBackChangesAfter(double time);
     void meetRequests();
+    void followKnobs();
     void updateRates();
 
     std::unique_ptr<Stepper> stepper_;
-    Camera initialCamera_;
+    std::unique_ptr<Loader> loader_;
+    bool resets_ = false;      // what the loader makes is this scene again
+    Start origin_;             // of this run
+    Scene asked_, inForce_;    // knobs as the last change left them; as the simulation has them
+    double inForceSince_ = 0;  // s simulated
+    std::vector<Change> changes_;
+    FluidExtent start_;
+    int64_t firstSteps_ = 0, savedSteps_ = 0;
     Measurement measurement_;
     History history_;
-    bool applyWanted_ = false, stirWanted_ = false, holdWanted_ = false, stepWanted_ = false, collected_ = false;
+    bool applyWanted_ = false, underWay_ = false, stirWanted_ = false, holdWanted_ = false,
+         stepWanted_ = false, collected_ = false;
     Stir stir_;
     Hold hold_;
     int64_t stepsLeft_ = 0;                // until the run pauses by itself; 0 = never

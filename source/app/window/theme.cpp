@@ -42,6 +42,7 @@ void setUpPanel(float scale) {
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr;
     ImGuiStyle& style = ImGui::GetStyle();
+    style = {};
     setColors(style);
     style.WindowRounding = 0;
     style.FrameRounding = style.GrabRounding = style.PopupRounding = 4;
@@ -51,6 +52,7 @@ void setUpPanel(float scale) {
     style.ScrollbarSize = 11;
     style.GrabMinSize = 12;
     style.ScaleAllSizes(scale);
+    io.Fonts->Clear();
     if (!fontPath().empty())
         io.Fonts->AddFontFromFileTTF(std::string(fontPath()).c_str(), std::round(15 * scale));
 }

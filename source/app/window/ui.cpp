@@ -1,9 +1,11 @@
 #include "app/window/ui.h"
 
 #include "core/error.h"
+#include "measure/output_file.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -40,19 +42,96 @@ void Ui::toggleRun() {
     stale = true;
 }
 
-void Ui::reset() {
+void Ui::reset() { player.reset(); }
+
+void Ui::load(const std::string& file) { player.load(file); }
+
+void Ui::takeLoaded() {
+    const std::string before = player.file();
+    const Scene knobsBefore = player.scene;
     try {
-        player.reset();
+        if (!player.takeLoaded()) return;
         picked.reset();
+        pickedSolid = -1;
+        if (player.file() != before) {
+            knobs = KnobHistory(player.scene);
+            say("loaded " + player.file());
+        } else if (const auto changed =
+                       changedKnobs(knobsBefore, player.scene, KnobKind::ButCamera);
+                   !changed.empty()) {
+            say("as loaded again: " + joined(changed) + " (Ctrl + Z brings them back)");
+        }
     } catch (const Error& error) { say(error.what(), true); }
+    stale = rewrite = true;
 }
 
-void Ui::load(const std::string& file) {
-    try {
-        player.load(file);
-        picked.reset();
-        say("loaded " + std::filesystem::path(file).filename().string());
-    } catch (const Error& error) { say(error.what(), true); }
+Escape escapeFrom(const Opened& o) {
+    if (o.question) return Escape::Stay;
+    if (o.loading) return Escape::CancelLoading;
+    if (o.popup) return Escape::ClosePopup;
+    if (o.help) return Escape::CloseHelp;
+    if (o.fullscreen) return Escape::LeaveFullScreen;
+    return o.unsaved ? Escape::Ask : Escape::Leave;
+}
+
+void Ui::escape() {
+    switch (escapeFrom(
+        {asking, player.loading() != nullptr, popupOpen, showHelp, fullscreen, player.unsaved()})) {
+        case Escape::Stay:
+            asking = false;
+            break;
+        case Escape::CancelLoading:
+            player.cancelLoading();
+            say("cancelled");
+            break;
+        case Escape::ClosePopup:
+            closePopups = true;
+            break;
+        case Escape::CloseHelp:
+            showHelp = false;
+            break;
+        case Escape::LeaveFullScreen:
+            fullscreen = false;
+            break;
+        case Escape::Ask:
+            asking = true;
+            break;
+        case Escape::Leave:
+            quit = true;
+            break;
+    }
+}
+
+// To close the window while the question is there is an answer.
+void Ui::leave() {
+    quit = asking || !player.unsaved();
+    asking = true;
+}
+
+void Ui::undo() {
+    const std::vector<std::string> paths = knobs.undo(player.scene);
+    if (paths.empty()) return say("no change of a knob is left to undo");
+    player.knobsChanged();
+    stale = rewrite = true;
+    say("undone: " + joined(paths));
+}
+
+void Ui::settleKnobs() { knobs.settle(player.scene); }
+
+float Ui::stirRadius() const {
+    const Scene& scene = player.scene;
+    const Vec3 size = scene.domain.max - scene.domain.min;
+    const float side = scene.simulation.dimensions == 2 ? std::min(size.x, size.y)
+                                                        : std::min({size.x, size.y, size.z});
+    return scene.view.stir.radius > 0 ? scene.view.stir.radius
+                                      : std::max(side / 8, 2 * scene.simulation.spacing);
+}
+
+void Ui::setStirRadius(float wanted) {
+    const Scene& scene = player.scene;
+    player.scene.view.stir.radius =
+        std::clamp(wanted, scene.simulation.spacing, length(scene.domain.max - scene.domain.min));
+    stale = true;
 }
 
 void Ui::switchBackend() {
@@ -76,41 +155,69 @@ void Ui::colorBy(ColorBy by) {
 }
 
 void Ui::resetCamera() {
-    player.scene.view.camera = player.initialCamera();
+    player.scene.view.camera = player.loadedScene().view.camera;
     stale = true;
 }
 
+namespace {
+
+// Saves by save(path) under the first free name in this folder and returns the path; "" and a
+// message when that fails.
+template <class Save>
+std::string saveAs(Ui& ui, const std::string& extension, const std::string& more, Save save) {
+    try {
+        const std::string path = std::filesystem::absolute(freeName(extension)).string();
+        requireWritable(path);
+        save(path);
+        std::printf("%s\n", path.c_str());
+        std::fflush(stdout);
+        ui.say("saved " + path + more);
+        return path;
+    } catch (const Error& error) {
+        ui.say(error.what(), true);
+        return "";
+    }
+}
+
+}  // namespace
+
 void Ui::takeScreenshot() {
     screenshot = false;
-    try {
-        const std::string name = freeName(".png");
-        writePng(name, frame.image());
-        std::printf("%s\n", std::filesystem::absolute(name).c_str());
-        std::fflush(stdout);
-        say("saved " + name);
-    } catch (const Error& error) { say(error.what(), true); }
+    saveAs(*this, ".png", "", [&](const std::string& path) { writePng(path, frame.image()); });
 }
 
 // Of a run that was stopped by itself: its last good state.
-void Ui::saveCheckpoint() {
-    try {
-        const std::string name = freeName(".h5");
-        player.saveCheckpoint(name);
-        std::printf("%s\n", std::filesystem::absolute(name).c_str());
-        std::fflush(stdout);
-        say("saved " + name + ", from which the run can go on");
-    } catch (const Error& error) { say(error.what(), true); }
+bool Ui::saveCheckpoint() {
+    return !saveAs(*this, ".h5", ", from which the run can go on", [&](const std::string& path) {
+                player.saveCheckpoint(path);
+            }).empty();
+}
+
+void Ui::saveCurves() {
+    saveAs(*this, ".csv", "",
+           [&](const std::string& path) { writeText(path, csvOf(player.history())); });
+}
+
+std::string csvOf(const History& h) {
+    std::string text =
+        "time [s],kinetic energy [J],potential energy [J],total energy [J],mean density error\n";
+    for (size_t i = 0; i < h.time.size(); ++i)
+        text += fmt::format("{},{},{},{},{}\n", h.time[i], h.kinetic[i], h.potential[i], h.total[i],
+                            h.densityError[i]);
+    return text;
 }
 
 // The particle in front whose sphere the ray through the mouse meets.
 void Ui::pick() {
     const Vec3d corner = toDouble(player.scene.domain.min);
-    const Ray ray = camera().ray((*pickAt)[0], (*pickAt)[1], float(area.width), float(area.height));
+    const std::array<float, 2> at = *pickAt;
+    const Ray ray = camera().ray(at[0], at[1], float(area.width), float(area.height));
     const Vec3d origin = toDouble(ray.origin) + corner, direction = toDouble(ray.direction);
     const double radius = 0.5 * player.scene.simulation.spacing * player.scene.view.particleScale;
     double nearest = 1e30;
     pickAt.reset();
     picked.reset();
+    pickedSolid = -1;
     for (const Particle& p : player.simulation().particles()) {
         const Vec3d to = p.position - origin;
         const double along = dot(to, direction);
@@ -119,6 +226,10 @@ void Ui::pick() {
         nearest = along;
         picked = p;
     }
+    const std::optional<Vec3> seen = frame.surfaceAt(int(at[0]), int(at[1]));
+    const bool inFront = seen && length(toDouble(*seen) + corner - origin) < nearest - 2 * radius;
+    if (inFront) pickedSolid = player.simulation().solidAt(toDouble(*seen) + corner);
+    if (pickedSolid >= 0) picked.reset();
     stale = true;
 }
 
@@ -140,7 +251,7 @@ void Ui::refreshPicked() {
 
 std::vector<Ring> Ui::rings() const {
     std::vector<Ring> marks;
-    if (drag == Drag::Stir) marks.push_back({stirCenter, stirRadius, {1.0f, 0.85f, 0.4f}});
+    if (drag == Drag::Stir) marks.push_back({stirCenter, stirRadius(), {1.0f, 0.85f, 0.4f}});
     if (drag == Drag::Solid) marks.push_back({stirCenter, 2 * player.scene.simulation.spacing, {1.0f, 0.85f, 0.4f}});
     for (const Particle& p : player.culprits)
         marks.push_back({toFloat(p.position) - player.scene.domain.min, 2 * player.scene.simulation.spacing, {1.0f, 0.2f, 0.1f}});

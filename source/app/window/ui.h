@@ -20,6 +20,11 @@ struct Area {
 
 enum class Drag { None, Orbit, Pan, Stir, Solid };
 
+// A scene of the list.
+struct SceneEntry {
+    std::string name, file, title;
+};
+
 // Words over the picture that go away by themselves.
 struct Message {
     std::string text;
@@ -29,17 +34,20 @@ struct Message {
 
 struct Ui {
     // Needs a current GL context.
-    Ui(Start start, int samples)
-        : player({onDrawingDevice(std::move(start.scene)), std::move(start.state)}), frame(1, 1, samples) {}
+    Ui(Loaded loaded, int samples)
+        : player(std::move(loaded)), frame(1, 1, samples), knobs(player.scene) {}
 
     Player player;
     Frame frame;
+    KnobHistory knobs;
     Area area;
     float scale = 1;    // of panel and text
     float density = 1;  // the window's pixels / the mouse's units
 
     bool quit = false, fullscreen = false, screenshot = false;
     bool showPanel = true, showHelp = false;
+    bool asking = false;                          // whether to leave a run that is not saved
+    bool popupOpen = false, closePopups = false;  // lists of the panel; what Esc wants of them
     bool stale = true;    // the picture no longer shows the state
     bool rewrite = true;  // the vertices no longer show the state
 
@@ -47,16 +55,18 @@ struct Ui {
     Drag drag = Drag::None;
     float mouseX = 0, mouseY = 0;  // px within the area
     Vec3 stirCenter, stirBefore;   // m, relative to the domain's lower corner
-    float stirRadius = 0.1f;       // m
     bool grabWanted = false;       // if there is an obstacle at stirCenter
     Hold hold;                     // of an obstacle that is dragged, its target seen from stirCenter
 
     std::optional<std::array<float, 2>> pickAt;  // px within the area
     std::optional<Particle> picked;
+    int pickedSolid = -1;
 
     Message message;
     std::string noGpu;                // why there is no GPU to switch to; empty = there is one
-    std::vector<std::string> scenes;  // that come with the program
+    std::vector<SceneEntry>
+        scenes;             // that come with the program; read when the list is first opened
+    std::string typedFile;  // in the scene list
     std::vector<PassTime> times;
     std::string device, glRenderer;
     bool onGpu = false;               // steps
@@ -71,17 +81,36 @@ struct Ui {
     void toggleRun();
     void reset();
     void load(const std::string& file);
+    void takeLoaded();
+    void escape();
+    void leave();
+    void undo();
+    void settleKnobs();        // now that nothing is held
+    float stirRadius() const;  // m
+    void setStirRadius(float);
     void switchBackend();
     void noteDevice();  // of a simulation that is new
     void colorBy(ColorBy);
     void resetCamera();
     void takeScreenshot();
-    void saveCheckpoint();
+    bool saveCheckpoint();
+    void saveCurves();
     void pick();           // the simulation must be at hand
     void grab();           // likewise
     void refreshPicked();  // likewise
     std::vector<Ring> rings() const;
 };
+
+// What Esc does: the first that there is to do.
+enum class Escape { Stay, CancelLoading, ClosePopup, CloseHelp, LeaveFullScreen, Ask, Leave };
+struct Opened {
+    bool question = false, loading = false, popup = false, help = false, fullscreen = false,
+         unsaved = false;
+};
+Escape escapeFrom(const Opened&);
+
+// The columns of the curves, with units; a line for each sample.
+std::string csvOf(const History&);
 
 double uiTime();  // s
 

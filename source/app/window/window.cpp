@@ -70,9 +70,8 @@ private:
 };
 
 struct Gui {
-    Gui(const Screen& screen, float scale) {
+    explicit Gui(const Screen& screen) {
         ImGui::CreateContext();
-        setUpPanel(scale);
         ImGui_ImplSDL2_InitForOpenGL(screen.window, screen.context);
         ImGui_ImplOpenGL3_Init("#version 450");
     }
@@ -83,6 +82,34 @@ struct Gui {
     }
     Gui(const Gui&) = delete;
     Gui& operator=(const Gui&) = delete;
+
+    // Between pictures.
+    void setScale(float scale) {
+        if (scale == scale_) return;
+        scale_ = scale;
+        setUpPanel(scale);
+        ImGui_ImplOpenGL3_DestroyFontsTexture();
+        ImGui_ImplOpenGL3_CreateFontsTexture();
+    }
+    void beginPicture(SDL_Window* window) const {
+        ImGui_ImplOpenGL3_NewFrame();
+        ImGui_ImplSDL2_NewFrame();
+        // The backend asks for the global mouse, which stands still under Xvfb while a button is
+        // held.
+        if (SDL_GetMouseFocus() == window) {
+            int x = 0, y = 0;
+            SDL_GetMouseState(&x, &y);
+            ImGui::GetIO().MousePos = {float(x), float(y)};
+        }
+        ImGui::NewFrame();
+    }
+    void endPicture(SDL_Window* window) const {
+        ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+        SDL_GL_SwapWindow(window);
+    }
+
+private:
+    float scale_ = 0;
 };
 
 // The window's pixels for one unit of the mouse.
@@ -105,28 +132,56 @@ float scaleOf(SDL_Window* window) {
     return std::clamp(std::round(dots / dense * 4) / 4, 1.0f, 3.0f);
 }
 
+float interfaceScale(SDL_Window* window, const Scene& scene) {
+    return scene.window.interfaceScale > 0 ? scene.window.interfaceScale : scaleOf(window);
+}
+
+// Thrown when the window is closed before the first run is ready.
+struct Left {};
+
+// Makes the first run ready while the window shows how far that is.
+Loaded loadFirst(const Screen& screen, Gui& gui, Start start) {
+    start.scene = onDrawingDevice(std::move(start.scene));
+    gui.setScale(interfaceScale(screen.window, start.scene));
+    Loader loader([&] { return std::move(start); });
+    while (!loader.done()) {
+        for (SDL_Event event; SDL_PollEvent(&event);)
+            if (event.type == SDL_QUIT ||
+                (event.type == SDL_KEYDOWN && event.key.keysym.sym == SDLK_ESCAPE))
+                throw Left{};
+        int width = 1, height = 1;
+        SDL_GL_GetDrawableSize(screen.window, &width, &height);
+        gui.beginPicture(screen.window);
+        showLoading(loader.progress(), 0.5f * float(width), 0.5f * float(height));
+        ImGui::Render();
+        glBindFramebuffer(GL_FRAMEBUFFER, 0);
+        glClearColor(0.07f, 0.08f, 0.10f, 1);
+        glClear(GL_COLOR_BUFFER_BIT);
+        gui.endPicture(screen.window);
+        SDL_Delay(16);
+    }
+    return loader.take();
+}
+
 class Desktop {
 public:
     explicit Desktop(Start start)
         : screen_(start.scene),
           samples_((loadGl(), start.scene.window.samples)),
-          gui_(screen_, scaleOf(screen_.window)),
-          ui_(std::move(start), samples_) {
-        ui_.scale = scaleOf(screen_.window);
-        ui_.scenes = shippedScenes();
+          gui_(screen_),
+          ui_(loadFirst(screen_, gui_, std::move(start)), samples_) {
         ui_.noGpu = whyNoGpu(ui_.player.scene);
         ui_.glRenderer = glName();
-        const Vec3 size = ui_.player.scene.domain.max - ui_.player.scene.domain.min;
-        ui_.stirRadius = 0.12f * std::min({size.x, size.y, size.z});
     }
 
     int run() {
         while (!ui_.quit) {
             handleEvents();
+            ui_.takeLoaded();
             followWindow();
             advance();
             if (ui_.stale) drawPicture();
-            if (drawn_ || settle_ > 0) present();
+            if (drawn_ || settle_ > 0 || ui_.player.loading()) present();
             limitRate();
             if (ui_.screenshot) ui_.takeScreenshot();
         }
@@ -138,7 +193,8 @@ private:
     static constexpr int settleFrames = 4;
 
     bool idle() const {
-        return !ui_.player.running && !ui_.player.busy() && !ui_.stale && settle_ <= 0;
+        return !ui_.player.running && !ui_.player.busy() && !ui_.player.loading() && !ui_.stale &&
+               settle_ <= 0;
     }
 
     void handleEvents() {
@@ -149,18 +205,21 @@ private:
             ImGui_ImplSDL2_ProcessEvent(&event);
             handleEvent(ui_, event);
         }
-        settle_ = messageChanged() || came ? settleFrames : settle_ - 1;
+        settle_ = notesChanged() || came ? settleFrames : settle_ - 1;
     }
 
-    // A message has come, or its time is over; in between nothing needs to be drawn.
-    bool messageChanged() {
-        const double until = uiTime() < ui_.message.until ? ui_.message.until : 0;
-        return std::exchange(messageUntil_, until) != until;
+    // Notes have come or gone; in between nothing needs to be drawn. A box needs two pictures to
+    // fit its text.
+    bool notesChanged() {
+        std::string notes = notesOf(ui_);
+        return std::exchange(notes_, notes) != notes;
     }
 
     // Size, full screen and panel may have changed: the picture takes what the panel leaves.
     void followWindow() {
         setFullScreen();
+        ui_.scale = interfaceScale(screen_.window, ui_.player.scene);
+        gui_.setScale(ui_.scale);
         int width = 1, height = 1;
         SDL_GL_GetDrawableSize(screen_.window, &width, &height);
         ui_.density = densityOf(screen_.window);
@@ -219,7 +278,7 @@ private:
     void startOver() {
         generation_ = ui_.player.generation();
         const Scene& scene = ui_.player.scene;
-        ui_.frame.restartRange();
+        ui_.frame.restart();
         Simulation& simulation = ui_.player.simulation();
         ui_.noteDevice();
         ui_.fluidCount = simulation.fluidCount();
@@ -233,9 +292,13 @@ private:
         const Vec3 origin = ui_.player.scene.domain.min;
         if (ui_.drag == Drag::Solid) ui_.player.hold({ui_.hold.solid, ui_.stirCenter + origin + ui_.hold.target});
         if (ui_.drag != Drag::Stir) return;
-        const Vec3 velocity = float(1 / passed) * (ui_.stirCenter - ui_.stirBefore);
-        ui_.player.stir({ui_.stirCenter + origin, ui_.stirRadius,
-                         passed < 0.5 ? velocity : Vec3{}});
+        // What the mouse does in a second of the clock, fluid does in view.speed seconds of its
+        // own.
+        const View& view = ui_.player.scene.view;
+        const Vec3 velocity =
+            float(1 / (passed * double(view.speed))) * (ui_.stirCenter - ui_.stirBefore);
+        ui_.player.stir(stirOf(view.stir, ui_.stirCenter + origin, ui_.stirRadius(),
+                               passed < 0.5 ? velocity : Vec3{}));
         ui_.stirBefore = ui_.stirCenter;
         stirTime_ = now;
     }
@@ -261,22 +324,12 @@ private:
     }
 
     void present() {
-        ImGui_ImplOpenGL3_NewFrame();
-        ImGui_ImplSDL2_NewFrame();
-        // The backend asks for the global mouse, which stands still under Xvfb while a button is
-        // held.
-        if (SDL_GetMouseFocus() == screen_.window) {
-            int x = 0, y = 0;
-            SDL_GetMouseState(&x, &y);
-            ImGui::GetIO().MousePos = {float(x), float(y)};
-        }
-        ImGui::NewFrame();
+        gui_.beginPicture(screen_.window);
         showPanel(ui_, windowHeight_);
         ImGui::Render();
         glBindFramebuffer(GL_FRAMEBUFFER, 0);
         ui_.frame.blit(ui_.area.x, windowHeight_ - ui_.area.y - ui_.area.height);
-        ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
-        SDL_GL_SwapWindow(screen_.window);
+        gui_.endPicture(screen_.window);
         drawn_ = false;
     }
 
@@ -301,12 +354,17 @@ private:
     bool moved_ = false,
          drawn_ = false;  // since the last update of the vertices; since the last present()
     std::array<int, 2> windowed_{};  // size before full screen
-    double pictureEnd_ = 0, messageUntil_ = 0;   // of the message on the screen
+    double pictureEnd_ = 0;
+    std::string notes_;  // on the screen
     double frameBegin_ = 0, nextTimes_ = 0, stirTime_ = 0;
 };
 
 }  // namespace
 
-int runWindow(Start start) { return Desktop(std::move(start)).run(); }
+int runWindow(Start start) {
+    try {
+        return Desktop(std::move(start)).run();
+    } catch (const Left&) { return int(Exit::Ok); }
+}
 
 }  // namespace spindrift

@@ -20,6 +20,15 @@ namespace {
 
 const std::string small = SPINDRIFT_SOURCE_DIR "/configs/test/dam_break_small.json";
 
+Loaded ready(Scene scene) {
+    return Loader([scene = std::move(scene)] { return Start{scene, {}}; }).take();
+}
+
+// Waits for what is made ready in the background. Throws what went wrong.
+void finishLoading(Player& player) {
+    while (!player.takeLoaded()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
 // Plays until `done` or for ten seconds.
 template <class Done>
 bool play(Player& player, Done done) {
@@ -36,7 +45,7 @@ bool play(Player& player, Done done) {
 }
 
 TEST(Player, RunsAndKeepsItsHistory) {
-    Player player(loadScene(small));
+    Player player(ready(loadScene(small)));
     EXPECT_TRUE(play(player, [&] { return player.measurement().steps >= 30; }));
     EXPECT_GT(player.measurement().time, 0);
     EXPECT_GE(player.history().time.size(), 3u);
@@ -44,7 +53,7 @@ TEST(Player, RunsAndKeepsItsHistory) {
 }
 
 TEST(Player, SingleStepIsOneStepAndPauses) {
-    Player player(loadScene(small));
+    Player player(ready(loadScene(small)));
     player.stepOnce();
     EXPECT_TRUE(play(player, [&] { return player.measurement().steps >= 1; }));
     play(player, [tries = 0]() mutable { return ++tries > 50; });
@@ -55,20 +64,117 @@ TEST(Player, SingleStepIsOneStepAndPauses) {
 TEST(Player, StopsAfterTheStepsAskedFor) {
     Scene scene = loadScene(small);
     scene.compute.steps = 7;
-    Player player(scene);
+    Player player(ready(scene));
     EXPECT_TRUE(play(player, [&] { return !player.running; }));
     EXPECT_EQ(player.measurement().steps, 7);
 }
 
-TEST(Player, ResetStartsAgainAndKeepsTheKnobs) {
-    Player player(loadScene(small));
-    player.scene.fluid.viscosity = 0.5f;
+TEST(Player, ResetBringsBackTheSceneAsLoadedButTheCamera) {
+    Player player(ready(loadScene(small)));
+    const Scene loaded = player.scene;
+    player.scene.fluid.viscosity = 0.5f, player.scene.view.colorBy = ColorBy::Density,
+    player.scene.view.camera.yaw = 77;
     player.knobsChanged();
     ASSERT_TRUE(play(player, [&] { return player.measurement().steps >= 10; }));
+    EXPECT_TRUE(player.unsaved());
     player.reset();
+    finishLoading(player);
     EXPECT_EQ(player.measurement().steps, 0);
-    EXPECT_EQ(player.scene.fluid.viscosity, 0.5f);
+    EXPECT_FALSE(player.unsaved());
+    EXPECT_TRUE(changedKnobs(player.scene, loaded, KnobKind::ButCamera).empty());
+    EXPECT_EQ(player.scene.view.camera.yaw, 77);
     EXPECT_LE(player.history().time.size(), 1u);
+}
+
+TEST(Player, ResetOfARunFromACheckpointIsTheCheckpoint) {
+    Player first(ready(loadScene(small)));
+    ASSERT_TRUE(play(first, [&] { return first.measurement().steps >= 5; }));
+    const auto file = std::filesystem::temp_directory_path() /
+                      ("spindrift-reset-" + std::to_string(getpid()) + ".h5");
+    first.saveCheckpoint(file.string());
+    EXPECT_FALSE(first.unsaved());
+    const int64_t steps = first.measurement().steps;
+    first.load(file.string());
+    finishLoading(first);
+    std::filesystem::remove(file);
+    EXPECT_EQ(first.measurement().steps, steps);
+    ASSERT_TRUE(play(first, [&] { return first.measurement().steps >= steps + 5; }));
+    first.reset();
+    finishLoading(first);
+    EXPECT_EQ(first.measurement().steps, steps);
+}
+
+// What makes no sense in this scene, by the same checks as a file's.
+TEST(Player, KnobsThatMakeNoSenseArePutBackWithAReason) {
+    Player player(ready(loadScene(small)));
+    const Scene before = player.scene;
+    player.scene.fluid.surfaceTension = 1;  // of wcsph
+    player.knobsChanged();
+    ASSERT_TRUE(play(player, [&] { return player.measurement().steps >= 3; }));
+    EXPECT_TRUE(changedKnobs(player.scene, before, KnobKind::All).empty());
+    EXPECT_NE(player.notice.find("fluid.surface_tension"), std::string::npos) << player.notice;
+}
+
+// A fluid that is made stiff at once would burst: its compression would be that much more energy.
+TEST(Player, SpeedOfSoundIsReachedWithoutABlow) {
+    for (const float wanted : {300.0f, 5.0f}) {
+        Player player(ready(loadScene(small)));
+        player.scene.view.speed = 10;
+        ASSERT_TRUE(play(player, [&] { return player.measurement().time >= 0.01; }));
+        const double energy =
+            player.measurement().kineticEnergy + player.measurement().potentialEnergy;
+        player.scene.fluid.soundSpeed = wanted;
+        player.knobsChanged();
+        double fastest = 0;
+        EXPECT_TRUE(play(player, [&] {
+            fastest = std::max(fastest, player.measurement().maxSpeed);
+            return std::abs(player.measurement().soundSpeed / double(wanted) - 1) < 1e-3;
+        })) << player.measurement().soundSpeed;
+        EXPECT_LT(fastest, 6) << wanted;  // m/s: falls of 0.5 m and jets
+        EXPECT_LT(player.measurement().kineticEnergy + player.measurement().potentialEnergy,
+                  1.01 * energy)
+            << wanted;
+        EXPECT_TRUE(player.notice.empty()) << player.notice;
+    }
+}
+
+// A fixed step that the run can't take: the guard goes back, and so does the knob.
+TEST(Player, ChangesThatTheRunCannotFollowArePutBack) {
+    Player player(ready(loadScene(small)));
+    ASSERT_TRUE(play(player, [&] { return player.measurement().steps >= 5; }));
+    player.scene.time.mode = TimeMode::Fixed, player.scene.time.step = 0.1f;
+    player.knobsChanged();
+    ASSERT_TRUE(play(player, [&] { return !player.notice.empty(); }));
+    EXPECT_NE(player.notice.find("put back: time.mode, time.step"), std::string::npos)
+        << player.notice;
+    EXPECT_EQ(player.scene.time.mode, TimeMode::Cfl);
+    const double time = player.measurement().time;
+    EXPECT_TRUE(play(player, [&] { return player.measurement().time > time; })) << player.halted;
+    EXPECT_GE(player.realTimeFactor(), 0);
+    EXPECT_GE(player.stepsPerSecond(), 0);
+}
+
+TEST(Player, PlaysAsFastAsItIsAskedTo) {
+    Scene scene = loadScene(small);
+    scene.view.speed = 0.01f, scene.time.mode = TimeMode::Fixed, scene.time.step = 1e-4f;
+    Player player(ready(scene));
+    const auto begin = std::chrono::steady_clock::now();
+    ASSERT_TRUE(play(player, [&] { return player.measurement().steps >= 10; }));
+    const double wall =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    EXPECT_GE(wall, 0.09);  // 1 ms of the fluid's time, a hundred times slowed down
+}
+
+TEST(Player, LoadingIsCancelled) {
+    Player player(ready(loadScene(small)));
+    player.load(SPINDRIFT_SOURCE_DIR "/configs/oil_and_water.json");
+    ASSERT_NE(player.loading(), nullptr);
+    while (player.loading()->share == 0 && !player.takeLoaded())
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    player.cancelLoading();
+    EXPECT_EQ(player.loading(), nullptr);
+    EXPECT_EQ(player.generation(), 1);
+    EXPECT_TRUE(play(player, [&] { return player.measurement().steps >= 3; })) << "it still runs";
 }
 
 TEST(Player, BrokenFileChangesNothing) {
@@ -76,7 +182,7 @@ TEST(Player, BrokenFileChangesNothing) {
                                 ("spindrift-broken-" + std::to_string(getpid()) + ".json"))
                                    .string();
     std::ofstream(broken) << R"({"version": 2, "fluid": {"viscosity": "thick"}})";
-    Player player(loadScene(small));
+    Player player(ready(loadScene(small)));
     ASSERT_TRUE(play(player, [&] { return player.measurement().steps >= 5; }));
     const std::string before = writeScene(player.scene);
     const int64_t steps = player.measurement().steps;
@@ -84,6 +190,7 @@ TEST(Player, BrokenFileChangesNothing) {
     for (const std::string& file : {broken, std::string("/no/such/file.json")}) {
         try {
             player.load(file);
+            finishLoading(player);
             ADD_FAILURE() << file << " was loaded";
         } catch (const Error& error) {
             EXPECT_EQ(error.exit, Exit::Scene);
@@ -99,9 +206,10 @@ TEST(Player, BrokenFileChangesNothing) {
 }
 
 TEST(Player, LoadReplacesSceneAndSimulation) {
-    Player player(loadScene(small));
+    Player player(ready(loadScene(small)));
     const int count = player.simulation().fluidCount();
     player.load(SPINDRIFT_SOURCE_DIR "/configs/test/ball_drop_small.json");
+    finishLoading(player);
     EXPECT_NE(player.simulation().fluidCount(), count);
     EXPECT_EQ(player.measurement().steps, 0);
     EXPECT_EQ(player.generation(), 2);
@@ -110,7 +218,7 @@ TEST(Player, LoadReplacesSceneAndSimulation) {
 TEST(Player, TroubleThatShorterStepsCantHelpHaltsTheRunAndMarksParticles) {
     Scene scene = loadScene(small);
     scene.time.mode = TimeMode::Fixed, scene.time.step = 0.5f, scene.time.retries = 1;
-    Player player(scene);
+    Player player(ready(scene));
     ASSERT_TRUE(play(player, [&] { return !player.halted.empty(); }));
     EXPECT_FALSE(player.running);
     EXPECT_NE(player.notice.find("try 1 of 1"), std::string::npos) << player.notice;
@@ -121,6 +229,7 @@ TEST(Player, TroubleThatShorterStepsCantHelpHaltsTheRunAndMarksParticles) {
     EXPECT_EQ(readCheckpoint(file.string()).state.clock.steps, 0) << "the last good state";
     std::filesystem::remove(file);
     player.reset();
+    finishLoading(player);
     EXPECT_TRUE(player.halted.empty() && player.notice.empty() && player.culprits.empty());
 }
 

@@ -55,7 +55,8 @@ TEST(Schema, EveryFieldOfASceneHasItsLine) {
                        fieldCount<Compute>() + fieldCount<SimulationKnobs>() +
                        fieldCount<Domain>() + fieldCount<Walls>() + fieldCount<Contact>() + fieldCount<Fluid>() -
                        1 /* bodies */ + fieldCount<TimeKnobs>() + fieldCount<View>() -
-                       1 /* camera */ + fieldCount<Camera>() + fieldCount<Output>() -
+                       2 /* camera and stirrer */ + fieldCount<Camera>() + fieldCount<Stirrer>() +
+                       fieldCount<Output>() -
                        1 /* probes */;
     EXPECT_EQ(knobCount(scene), fields);
 

@@ -1,0 +1,73 @@
+#include "app/window/idle_knobs.h"
+
+namespace spindrift {
+
+namespace {
+
+const char* whyTimeIsIdle(const Scene& s, const std::string& path) {
+    const TimeMode mode = s.time.mode;
+    if (path == "time.step" && mode != TimeMode::Fixed) return "time.mode is not fixed";
+    if ((path == "time.cfl" || path == "time.max_step") && mode == TimeMode::Fixed)
+        return "time.mode is fixed";
+    if (path == "time.rest_speed" && mode != TimeMode::Local) return "time.mode is not local";
+    return "";
+}
+
+const char* whyFluidIsIdle(const Scene& s, const std::string& path) {
+    const Fluid& f = s.fluid;
+    const Formulation formulation = s.simulation.formulation;
+    if ((path == "fluid.sound_speed" || path == "fluid.speed_ratio") && f.stiffness > 0)
+        return "fluid.stiffness says it";
+    if (path == "fluid.speed_ratio" && f.soundSpeed > 0) return "fluid.sound_speed says it";
+    if (path == "fluid.gamma" && f.equationOfState == EquationOfState::Linear)
+        return "fluid.equation_of_state is linear";
+    if (path == "fluid.density_diffusion" && !carriesDensity(s))
+        return "density is summed up, not carried";
+    if (path == "fluid.shifting" && !shiftsParticles(s) && formulation != Formulation::DeltaPlus &&
+        formulation != Formulation::TransportVelocity)
+        return "simulation.formulation is neither delta_plus nor transport_velocity";
+    if (path == "fluid.surface_tension" && formulation != Formulation::DeltaPlus)
+        return "simulation.formulation is not delta_plus";
+    if (path == "fluid.air_density" && formulation != Formulation::Wcsph)
+        return "simulation.formulation is not wcsph";
+    if ((path == "fluid.drag_coefficient" || path == "fluid.wind") && f.airDensity <= 0)
+        return "fluid.air_density is 0";
+    const bool alone =
+        formulation == Formulation::Classic || formulation == Formulation::TransportVelocity;
+    const bool isRare = path == "fluid.velocity_transfer" || path == "fluid.buoyancy" ||
+                        path == "fluid.dissipation";
+    if (alone && (isRare || path == "fluid.artificial_viscosity"))
+        return "simulation.formulation does without";
+    if (path == "fluid.buoyancy" && s.simulation.gravity == Vec3{}) return "there is no gravity";
+    return "";
+}
+
+const char* whyRestIsIdle(const Scene& s, const std::string& path) {
+    if (path == "simulation.gravity_ramp" && s.simulation.gravity == Vec3{})
+        return "there is no gravity";
+    if (path == "simulation.pressure_form" && s.simulation.formulation != Formulation::Wcsph)
+        return "simulation.formulation is not wcsph";
+    const bool soundIsKnown = s.fluid.soundSpeed > 0 || s.fluid.stiffness > 0;  // else it follows
+    if (path == "walls.velocity" && s.walls.movingFace == Face::None && soundIsKnown)
+        return "walls.moving_face is none";
+    if (path.starts_with("contact.") && s.objects.empty()) return "there are no elastic objects";
+    if (path.starts_with("view.range_") && s.view.range != RangeMode::Fixed)
+        return "view.range is not fixed";
+    if (path == "view.solid_particles" && s.solids.empty()) return "there are no solids";
+    if (path == "view.color_map" &&
+        (s.view.colorBy == ColorBy::Plain || (s.view.colorBy == ColorBy::Fluid && isMixture(s))))
+        return "what is shown has colours of its own";
+    if (path == "view.camera.target" && s.view.camera.automaticTarget)
+        return "view.camera.automatic_target is on";
+    return "";
+}
+
+}  // namespace
+
+std::string whyIdle(const Scene& scene, const std::string& path) {
+    for (const auto why : {whyTimeIsIdle, whyFluidIsIdle, whyRestIsIdle})
+        if (const std::string reason = why(scene, path); !reason.empty()) return reason;
+    return "";
+}
+
+}  // namespace spindrift
