@@ -79,6 +79,26 @@ void writeUnit(hid_t file, const std::string& name, const std::string& unit) {
     require(H5Awrite(attribute, type, unit.data()), name);
 }
 
+std::string readUnit(hid_t file, const std::string& name) {
+    Handle set(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, name);
+    if (H5Aexists(set, "unit") <= 0) return "";
+    Handle attribute(H5Aopen(set, "unit", H5P_DEFAULT), H5Aclose, name);
+    Handle type(H5Aget_type(attribute), H5Tclose, name);
+    Handle space(H5Aget_space(attribute), H5Sclose, name);
+    if (H5Tget_class(type) != H5T_STRING || H5Sget_simple_extent_npoints(space) != 1)
+        throw Trouble{name + "'s unit"};
+    if (H5Tis_variable_str(type) <= 0) {
+        std::string text(H5Tget_size(type), 0);
+        require(H5Aread(attribute, type, text.data()), name);
+        return text.c_str();  // padded with zeros
+    }
+    char* text = nullptr;
+    require(H5Aread(attribute, type, &text), name);
+    const std::string unit = text ? text : "";
+    H5free_memory(text);
+    return unit;
+}
+
 void writeNumbers(hid_t file, const std::string& name, const std::string& unit, const std::vector<double>& values) {
     writeArray(file, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, values.data(), {values.size()});
     writeUnit(file, name, unit);

@@ -47,6 +47,8 @@ bool isFile(const std::string& path);
 void writeArray(hid_t file, const std::string& name, hid_t stored, hid_t native, const void* data, const std::vector<hsize_t>& size);
 // Text as the attribute "unit" of a dataset; none when it is empty.
 void writeUnit(hid_t file, const std::string& name, const std::string& unit);
+// That text, of fixed or variable length; empty where there is none.
+std::string readUnit(hid_t file, const std::string& name);
 // A dataset of one dimension, float64.
 void writeNumbers(hid_t file, const std::string& name, const std::string& unit, const std::vector<double>& values);
 

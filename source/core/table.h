@@ -1,5 +1,7 @@
 #pragma once
-// Tables of numbers: CSV with a line of names, a unit behind them if any ("x [m]"); empty lines and those that start with # are skipped.
+// Tables of numbers: CSV with a line of names, a unit behind them if any ("x [m]"); empty lines and
+// those that start with # are skipped. The line of names says what separates cells: semicolons,
+// commas, tabs or blanks. Numbers have decimal points, or all of them commas. Names may be quoted.
 #include <cstdint>
 #include <map>
 #include <string>
@@ -17,9 +19,19 @@ struct Table {
 
 // Throws Error (Scene) when the file is missing or has no rows.
 Table readTable(const std::string& path);
-// The same, from a user's file: each of `needed` must be there and all cells be finite numbers; an error names the first lines
-// that are wrong.
-Table readStrictTable(const std::string& path, const std::vector<std::string>& needed);
+
+// A column that a user's table may have or must, and the unit that its values come back in,
+// whatever its header says.
+struct TableColumn {
+    std::string name, unit;
+    bool needed = false;
+};
+// The same, from a user's file: each needed column must be there, no other than the known ones, in
+// letters of either case, and all cells be finite numbers; an error names the first lines that are
+// wrong.
+Table readStrictTable(const std::string& path, const std::vector<TableColumn>& known);
+// The names that the header has, in small letters.
+std::vector<std::string> columnsOf(const std::string& path);
 // How many rows there are, without reading them. Throws Error (Scene) when the file is missing.
 int64_t countRows(const std::string& path);
 

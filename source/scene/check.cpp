@@ -6,6 +6,7 @@
 #include "scene/json.h"
 #include "scene/motion.h"
 #include "scene/particle_file.h"
+#include "scene/particle_spacing.h"
 #include "scene/sample_object.h"
 #include "scene/schema.h"
 
@@ -200,18 +201,97 @@ void checkBody(const Scene& scene, size_t index) {
     }
 }
 
-void checkParticleFile(const Scene& scene, size_t index) {
-    const Body& body = scene.fluid.bodies[index];
-    if (body.shape != Shape::File) return;
-    const ParticleTable table = readParticles(body.path);
+void requireInside(const Scene& scene, const std::string& body, const std::string& file,
+                   const ParticleTable& table) {
     for (size_t i = 0; i < table.positions.size(); ++i)
         for (int k = 0; k < scene.simulation.dimensions; ++k) {
             const double low = scene.domain.min[k], high = scene.domain.max[k], at = table.positions[i][k], tolerance = 1e-5 * (high - low);
             if (!(at >= low - tolerance && at <= high + tolerance))
-                refuse(bodyPath(index) + ".path",
-                       fmt::format("{}: {}: {} = {} m is outside the domain's {} to {} m; remove the particle or enlarge the domain",
-                                   body.path, table.nameOf(i), "xyz"[k], at, low, high));
+                refuse(body, fmt::format("{}: {}: {} = {} m is outside the domain's {} to {} m; "
+                                         "remove the particle or enlarge the domain",
+                                         file, table.nameOf(i), "xyz"[k], at, low, high));
         }
+}
+
+// Densities whose unit is another one are a thousand times too small or too large.
+void checkDensities(const std::string& body, const std::string& file, const ParticleTable& table,
+                    double rest) {
+    if (table.densities.empty()) return;
+    const auto [least, most] = std::minmax_element(table.densities.begin(), table.densities.end());
+    if (*most < 0.01 * rest || *least > 100 * rest)
+        refuse(body, fmt::format("{}: rho is {:.4g} to {:.4g} kg/m^3, and {:.4g} at rest; name its "
+                                 "unit in the header, as rho [g/cm^3], or set "
+                                 "fluid.rest_density",
+                                 file, *least, *most, rest));
+}
+
+// Where a column says how dense particles are, they may be nearer or farther by what that makes.
+void checkSpacing(const Scene& scene, const std::string& body, const std::string& file,
+                  const ParticleTable& table, double rest) {
+    const int d = scene.simulation.dimensions;
+    std::vector<Vec3d> places = table.positions;
+    if (d == 2)
+        for (Vec3d& p : places) p.z = 0;
+    const double found = spacingBetween(places, d), dx = scene.simulation.spacing;
+    if (found == 0 || scene.fluid.particleMass > 0) return;
+    std::vector<double> rho = table.densities;
+    double expected = dx;
+    if (!rho.empty()) {
+        std::nth_element(rho.begin(), rho.begin() + long(rho.size() / 2), rho.end());
+        expected *= std::pow(rest / rho[rho.size() / 2], 1.0 / d);
+    }
+    constexpr double Most = 0.05;
+    if (std::abs(found / dx - 1) > Most && std::abs(found / expected - 1) > Most)
+        refuse(body, fmt::format("{}: its {} particles are {:.3g} m apart in the mean, and "
+                                 "simulation.spacing is {:.3g} m; set it to {:.3g}, or make "
+                                 "the file anew",
+                                 file, places.size(), found, dx, found));
+}
+
+// Of all files together: the same one may be read twice.
+void checkDoubled(const Scene& scene, const std::vector<std::pair<size_t, ParticleTable>>& tables) {
+    constexpr double Nearest = 0.05;  // spacings; particles of violent runs keep twice as far apart
+    std::vector<Vec3d> places;
+    std::vector<std::pair<size_t, size_t>> origins;  // which table, which of its particles
+    for (size_t t = 0; t < tables.size(); ++t)
+        for (size_t i = 0; i < tables[t].second.positions.size(); ++i) {
+            places.push_back(tables[t].second.positions[i]);
+            if (scene.simulation.dimensions == 2) places.back().z = 0;
+            origins.push_back({t, i});
+        }
+    Vec3d periods{0, 0, 0};
+    for (int k = 0; k < scene.simulation.dimensions; ++k)
+        if (scene.domain.periodic(k)) periods[k] = scene.domain.size()[k];
+    const auto doubled = doubledParticles(places, Nearest * scene.simulation.spacing, periods);
+    if (doubled.empty()) return;
+    auto name = [&](size_t particle) {
+        const auto [t, i] = origins[particle];
+        return fmt::format("{}: {}", scene.fluid.bodies[tables[t].first].path,
+                           tables[t].second.nameOf(i));
+    };
+    const auto [later, earlier] = doubled.front();
+    const Vec3d at = places[later];
+    refuse(
+        bodyPath(tables[origins[later].first].first) + ".path",
+        fmt::format("{} of {} particles are where another one is, the first at ({:.4g}, {:.4g}, "
+                    "{:.4g}) m, {} and {}; remove them",
+                    doubled.size(), places.size(), at.x, at.y, at.z, name(earlier), name(later)));
+}
+
+void checkParticleFiles(const Scene& scene) {
+    std::vector<std::pair<size_t, ParticleTable>> tables;
+    for (size_t b = 0; b < scene.fluid.bodies.size(); ++b) {
+        const Body& body = scene.fluid.bodies[b];
+        if (body.shape != Shape::File) continue;
+        const ParticleTable& table = tables.emplace_back(b, readParticles(body.path)).second;
+        const std::string path = bodyPath(b) + ".path";
+        requireInside(scene, path, body.path, table);
+        checkDensities(path, body.path, table, restDensity(scene, body));
+    }
+    checkDoubled(scene, tables);
+    for (const auto& [b, table] : tables)
+        checkSpacing(scene, bodyPath(b) + ".path", scene.fluid.bodies[b].path, table,
+                     restDensity(scene, scene.fluid.bodies[b]));
 }
 
 // The particles that the bodies have, files among them counted.
@@ -352,7 +432,7 @@ void checkScene(const Scene& scene, const std::string& place, std::optional<Part
                                scene.view.rangeMax, scene.view.rangeMin));
         checkOutput(scene.output);
         checkCounts(scene, count);
-        for (size_t b = 0; b < scene.fluid.bodies.size() && !begun; ++b) checkParticleFile(scene, b);
+        if (!begun) checkParticleFiles(scene);
     } catch (const Error& error) {
         throw Error(error.exit, fmt::format("{}: {}", place, error.what()));
     }

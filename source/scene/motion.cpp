@@ -19,12 +19,20 @@ constexpr double PerDegree = std::numbers::pi / 180;
 constexpr double Forever = 1e9;
 
 Keyframes readKeyframes(const std::string& path) {
-    const bool rates = readTable(path).has("vx");
-    const std::vector<std::string> needed = rates ? std::vector<std::string>{"t", "vx", "vy", "vz"}
-                                                  : std::vector<std::string>{"t", "x", "y", "z"};
-    const Table table = readStrictTable(path, needed);
+    const std::vector<std::string> columns = columnsOf(path);
+    const bool rates = std::find(columns.begin(), columns.end(), "vx") != columns.end();
+    const std::vector<std::string> names = rates ? std::vector<std::string>{"vx", "vy", "vz"}
+                                                 : std::vector<std::string>{"x", "y", "z"};
+    const std::string per = rates ? "/s" : "";
+    const Table table = readStrictTable(path, {{"t", "s", true},
+                                               {names[0], "m" + per, true},
+                                               {names[1], "m" + per, true},
+                                               {names[2], "m" + per, true},
+                                               {"turn", "degrees" + per}});
     auto value = [&](const std::string& name, size_t row) { return table.has(name) ? table.at(name)[row] : 0.0; };
-    auto row = [&](size_t i) { return Vec3d{value(needed[1], i), value(needed[2], i), value(needed[3], i)}; };
+    auto row = [&](size_t i) {
+        return Vec3d{value(names[0], i), value(names[1], i), value(names[2], i)};
+    };
     Keyframes keyframes;
     Vec3d offset;
     double turn = 0;

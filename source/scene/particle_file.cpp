@@ -3,7 +3,7 @@
 #include "core/error.h"
 #include "core/hdf5_file.h"
 #include "core/table.h"
-#include "scene/suggest.h"
+#include "core/units.h"
 
 #include <fmt/format.h>
 
@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstdio>
 #include <iterator>
+#include <optional>
 
 namespace spindrift {
 namespace {
@@ -51,21 +52,27 @@ ParticleTable tableOf(const std::string& path, Values v, std::vector<int> lines)
 }
 
 ParticleTable readCsv(const std::string& path) {
-    Table file = readStrictTable(path, {"x", "y", "z"});
+    std::vector<TableColumn> known;
+    for (size_t k = 0; k < Columns; ++k) known.push_back({Names[k], Units[k], k < 3});
+    Table file = readStrictTable(path, known);
     Values values;
-    for (auto& [name, column] : file.columns) {
-        const size_t k = size_t(std::find(std::begin(Names), std::end(Names), name) - std::begin(Names));
-        if (k == Columns)
-            refuse(path, fmt::format("unknown column \"{}\"; known: {}", name.substr(0, 40), listed({std::begin(Names), std::end(Names)})));
-        values[k] = std::move(column);
-    }
+    for (size_t k = 0; k < Columns; ++k)
+        if (file.has(Names[k])) values[k] = std::move(file.columns[Names[k]]);
     return tableOf(path, std::move(values), std::move(file.lines));
 }
 
 ParticleTable readHdf5(const std::string& path, hid_t file) {
     Values values;
-    for (size_t k = 0; k < Columns; ++k)
-        if (H5Lexists(file, Names[k], H5P_DEFAULT) > 0) values[k] = hdf5::readNumbers(file, Names[k]);
+    for (size_t k = 0; k < Columns; ++k) {
+        if (H5Lexists(file, Names[k], H5P_DEFAULT) <= 0) continue;
+        values[k] = hdf5::readNumbers(file, Names[k]);
+        const std::string unit = hdf5::readUnit(file, Names[k]);
+        const std::optional<double> factor = unit.empty() ? 1 : unitFactor(unit, Units[k]);
+        if (!factor)
+            refuse(path, fmt::format("dataset {}: \"{}\" is no unit of it that is known; use {}",
+                                     Names[k], unit.substr(0, 40), commonUnits(Units[k])));
+        for (double& value : values[k]) value *= *factor;
+    }
     return tableOf(path, std::move(values), {});
 }
 

@@ -126,7 +126,10 @@ void visitMember(S& s, const std::string& at, Visitor&& visit) {
                "to its place here; on straight lines between, at rest before and after",
                Restart});
     visit(at + ".motion", s.motion,
-          Knob{"", 0, 0, "CSV with the keyframes, columns t, x, y, z or t, vx, vy, vz, and turn if it turns", Restart});
+          Knob{"", 0, 0,
+               "CSV with the keyframes, columns t, x, y, z or t, vx, vy, vz, and turn if it turns; "
+               "s, m and degrees, or units of the header, as x [mm]",
+               Restart});
     visit(at + ".density", s.density,
           Knob{"kg/m^3", 0, 1e5f, "lets it float: fluid, gravity and what it touches move it, velocity and spin are those at the start; 0 = it moves as prescribed", Restart});
     visit(at + ".friction", s.friction, Knob{"", 0, 10, "of what floats: Coulomb's coefficient where it touches walls and other solids; the lower one counts", Restart});

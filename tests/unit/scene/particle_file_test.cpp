@@ -96,6 +96,32 @@ TEST_F(ParticleFiles, WhatIsWrittenIsReadBitByBit) {
     EXPECT_FALSE(writeParticles("/nowhere/t.h5", true, t));
 }
 
+TEST_F(ParticleFiles, UnitsOfTheHeaderAreHonouredOrRefused) {
+    const ParticleTable t =
+        readParticles(write("\xef\xbb\xbf\"X [mm]\";y [cm];z;VX [km/h];vy;vz [mm/s];Rho [g/cm³];p "
+                            "[bar]\r\n1500;2,5;3;36;2;3;1;2\r\n"));
+    EXPECT_EQ(t.positions[0], (Vec3d{1.5, 0.025, 3}));
+    EXPECT_NEAR(t.velocities[0].x, 10, 1e-12);
+    EXPECT_EQ(t.velocities[0].z, 0.003);
+    EXPECT_NEAR(t.densities[0], 1000, 1e-9);
+    EXPECT_EQ(t.pressures[0], 2e5);
+    expectComplaint("x,y,z,rho [lumps]\n1,2,3,1\n",
+                    "column rho: \"lumps\" is no unit of it that is known; use kg/m^3, g/cm^3");
+    expectComplaint("x,y,z,p [mm]\n1,2,3,1\n",
+                    "column p: \"mm\" is no unit of it that is known; use Pa, hPa");
+    const std::string path = (folder / "u.h5").string();
+    for (const char* unit : {"mm", "lumps"}) {
+        ASSERT_TRUE(hdf5::writeFile(path, [&](hid_t file) {
+            for (const char* name : {"x", "y", "z"})
+                hdf5::writeNumbers(file, name, name[0] == 'y' ? unit : "", {1500});
+        }));
+        if (unit == std::string("lumps")) continue;
+        EXPECT_EQ(readParticles(path).positions[0], (Vec3d{1500, 1.5, 1500}));
+    }
+    EXPECT_NE(complaint(path).find("dataset y: \"lumps\" is no unit"), std::string::npos)
+        << complaint(path);
+}
+
 TEST_F(ParticleFiles, MistakesAreNamedByLine) {
     expectComplaint("x,y,z\n1,2,3\n1,b,3\n", "line 3: y is no number");
     expectComplaint("x,y,z\n1,,3\n", "line 2: y is no number");
@@ -174,6 +200,122 @@ TEST_F(ParticleFiles, OutsideTheDomainIsNamedByLine) {
         EXPECT_NE(std::string(error.what()).find("s.json: fluid.bodies[0].path: "), std::string::npos) << error.what();
         EXPECT_NE(std::string(error.what()).find("line 4: y = 5 m is outside the domain's 2 to 3 m"), std::string::npos) << error.what();
     }
+}
+
+// A block of places on a lattice, or shaken, as a file; `more` are rows behind it.
+static std::string rowsOf(int dimensions, double spacing, double shaken,
+                          const std::string& more = "") {
+    std::string text = "x,y,z\n";
+    unsigned random = 1;
+    auto place = [&](int i) {
+        random = random * 1664525u + 1013904223u;
+        return (i + 0.5 + shaken * (double(random) / 4294967296.0 - 0.5)) * spacing;
+    };
+    const int n = int(0.9 / spacing);
+    for (int x = 0; x < n; ++x)
+        for (int y = 0; y < n; ++y)
+            for (int z = 0; z < (dimensions == 2 ? 1 : n); ++z)
+                text += std::to_string(place(x) - 1) + "," + std::to_string(place(y) + 2) + "," +
+                        std::to_string(place(z) + 3) + "\n";
+    return text + more;
+}
+
+static std::string refusalOf(const Scene& scene) {
+    try {
+        checkScene(scene, "s.json");
+    } catch (const Error& error) {
+        EXPECT_EQ(int(error.exit), int(Exit::Scene));
+        return error.what();
+    }
+    return "";
+}
+
+TEST_F(ParticleFiles, AnotherSpacingIsRefused) {
+    for (const int dimensions : {2, 3})
+        for (const double shaken : {0.0, 0.3})
+            for (const double ratio : {0.5, 0.8, 0.93, 0.97, 1.0, 1.03, 1.07, 1.3, 2.0}) {
+                Scene scene =
+                    sceneOf(write(rowsOf(dimensions, 0.06 * ratio, shaken)), Formulation::Wcsph);
+                scene.simulation.dimensions = dimensions;
+                scene.simulation.spacing = 0.06f;
+                const std::string said = refusalOf(scene);
+                const bool near = std::abs(ratio - 1) < 0.05;
+                EXPECT_EQ(said.empty(), near) << dimensions << " dimensions, shaken by " << shaken
+                                              << ", " << ratio << ": " << said;
+                const bool named =
+                    said.find("fluid.bodies[0].path: ") != std::string::npos &&
+                    said.find("m apart in the mean, and simulation.spacing is 0.06 m") !=
+                        std::string::npos;
+                EXPECT_EQ(named, !near) << said;
+            }
+}
+
+TEST_F(ParticleFiles, DoubledParticlesAreCountedAndPlaced) {
+    const std::string again = "-0.95,2.05,3.05\n-0.85,2.0501,3.05\n";
+    const std::string said =
+        refusalOf(sceneOf(write(rowsOf(3, 0.1, 0, again)), Formulation::Wcsph));
+    EXPECT_NE(
+        said.find(
+            "2 of 731 particles are where another one is, the first at (-0.95, 2.05, 3.05) m"),
+        std::string::npos)
+        << said;
+    EXPECT_NE(said.find("line 2 and "), std::string::npos) << said;
+    EXPECT_NE(said.find("line 731; remove"), std::string::npos) << said;
+    // One file twice, and the first and the last layer of a period.
+    Scene twice = sceneOf(write(rowsOf(3, 0.1, 0)), Formulation::Wcsph);
+    EXPECT_EQ(refusalOf(twice), "");
+    twice.fluid.bodies.push_back(twice.fluid.bodies[0]);
+    EXPECT_NE(refusalOf(twice).find("729 of 1458 particles"), std::string::npos)
+        << refusalOf(twice);
+    Scene around = sceneOf(write("x,y,z\n-1,2.5,3.5\n0,2.5,3.5\n"), Formulation::Wcsph);
+    around.domain.max.x = 0.2f;
+    EXPECT_EQ(refusalOf(around), "");
+    around.domain.max.x = 0, around.domain.periodicX = true, around.simulation.spacing = 0.08f;
+    EXPECT_NE(refusalOf(around).find("1 of 2 particles"), std::string::npos) << refusalOf(around);
+}
+
+TEST_F(ParticleFiles, DensitiesInAnotherUnitAreRefused) {
+    const std::string row = "\n-0.5,2.5,3.5,1\n";
+    const std::string said = refusalOf(sceneOf(write("x,y,z,rho" + row), Formulation::DeltaSph));
+    EXPECT_NE(said.find("rho is 1 to 1 kg/m^3, and 1000 at rest; name its unit in the header"),
+              std::string::npos)
+        << said;
+    EXPECT_EQ(refusalOf(sceneOf(write("x,y,z,rho [g/cm^3]" + row), Formulation::DeltaSph)), "");
+}
+
+// What a run has written begins another one, however violent it was.
+TEST_F(ParticleFiles, StatesOfViolentRunsAreTaken) {
+    for (const int dimensions : {2, 3})
+        for (const Formulation formulation :
+             {Formulation::Wcsph, Formulation::DeltaSph, Formulation::DeltaPlus}) {
+            Scene scene;
+            scene.compute.backend = Backend::Cpu;
+            scene.simulation.formulation = formulation;
+            scene.simulation.dimensions = dimensions;
+            scene.simulation.spacing = dimensions == 2 ? 0.02f : 0.05f;
+            scene.domain = {{0, 0, 0}, {0.8f, 1, 0.4f}};
+            scene.fluid.bodies.assign(2, Body{});
+            scene.fluid.bodies[0].min = {0, 0, 0}, scene.fluid.bodies[0].max = {0.8f, 0.3f, 0.4f};
+            scene.fluid.bodies[1].min = {0.24f, 0.4f, 0},
+            scene.fluid.bodies[1].max = {0.56f, 0.72f, 0.4f};
+            scene.fluid.bodies[1].velocity = {0, -8, 0};
+            const auto simulation = makeSimulation(scene);
+            for (const double time : {0.03, 0.08}) {
+                while (simulation->measure().time < time) simulation->step();
+                ParticleTable table;
+                for (const Particle& p : simulation->particles()) {
+                    table.positions.push_back(p.position), table.velocities.push_back(p.velocity);
+                    table.densities.push_back(p.density), table.pressures.push_back(p.pressure);
+                }
+                Scene next = scene;
+                next.fluid.bodies.assign(1, Body{});
+                next.fluid.bodies[0].shape = Shape::File;
+                next.fluid.bodies[0].path = (folder / "state.csv").string();
+                ASSERT_TRUE(writeParticles(next.fluid.bodies[0].path, false, table));
+                EXPECT_EQ(refusalOf(next), "") << dimensions << " dimensions, formulation "
+                                               << int(formulation) << ", " << time << " s";
+            }
+        }
 }
 
 TEST_F(ParticleFiles, ARelativePathStartsAtTheSceneFile) {
