@@ -99,7 +99,7 @@ TEST(ReadScene, NamesPlaceAndRemedyOfEachMistake) {
         {R"({"version": 2, "fluid": {"bodies": [3]}})",
          "fluid.bodies[0]: expected an object {...}, found 3"},
         {R"({"version": 2, "fluid": {"bodies": [{"radius": 1}]}})",
-         "fluid.bodies[0].radius: unknown key; known here: field, max, min, pressure, rest_density, shape, velocity, viscosity"},
+         "fluid.bodies[0].radius: unknown key; known here: field, max, min, name, pressure, rest_density, shape, velocity, viscosity"},
         {R"({"version": 2, "output": {"probes": [{"kind": "heigth"}]}})",
          "output.probes[0].kind: expected one of point, line, height, front, found \"heigth\"; did you mean \"height\"?"},
         {R"({"version": 2, "output": {"probes": [{"kind": "front", "radius": 1}]}})",
