@@ -50,8 +50,9 @@ struct Reorder {
     }
 };
 
-// m_b = f rho0 / sum W over the boundary particles, itself included (Akinci 2012, their eq. 4 and 5), but no less than
-// wallMassFloor: in the edges of a box, where two walls meet, the wall would become thin.
+// m_b = f rho0 / sum W over the boundary particles (Akinci 2012, their eq. 4 and 5), itself included
+// but in the classic formulation, and no less than wallMassFloor: in the edges of a box, where two
+// walls meet, the wall would become thin. One that is alone, as empty slots are, stays finite.
 template <class Kernel> struct ComputeWallMass {
     using Index = Group;
     View v;
@@ -60,7 +61,9 @@ template <class Kernel> struct ComputeWallMass {
         forNeighbours<Lists::All>(v, v.wallsNearWalls, i, load(v.walls.position, i), [&](const auto& p, Four) LANE_CALL {
             sum += Kernel::w(p.q);
         });
-        const Real<Group> mass = Real<Group>(v.c.wallFactor * v.c.restDensity / v.c.kernelScale) / total(sum);
+        const real alone = Kernel::w(real(0));
+        const Real<Group> near = max(total(sum) + Real<Group>((v.c.selfWeight - 1) * alone), Real<Group>(real(0.01) * alone));
+        const Real<Group> mass = Real<Group>(v.c.wallFactor * v.c.restDensity / v.c.kernelScale) / near;
         store(v.walls.mass, i, max(mass, Real<Group>(v.c.wallMassFloor)));
     }
 };

@@ -24,9 +24,9 @@ struct Classic {
         v.resize(x.size());
         rho.resize(x.size());
         fill(wallCells_, walls);
-        for (const Vec3d& b : walls) {
+        for (size_t i = 0; i < walls.size(); ++i) {
             double sum = 0;
-            near(wallCells_, walls, b, [&](size_t, Vec3d r) { sum += W(length(r)); });
+            near(wallCells_, walls, walls[i], [&](size_t j, Vec3d r) { sum += j != i ? W(length(r)) : 0; });
             wallMass.push_back(1.4 * rho0 / sum);
         }
     }
@@ -34,25 +34,26 @@ struct Classic {
     double W(double d) const {
         const double q = 2 * d / R;
         if (q > 2) return 0;
-        return 0.25 / (pi * R * R * R) * (q > 1 ? std::pow(2 - q, 3) : q * q * (3 * q - 6) + 4);
+        return 0.25 / (pi * R * R * R) * (q > 1 ? (2 - q) * (2 - q) * (2 - q) : q * q * (3 * q - 6) + 4);
     }
     double gradient(double d) const {   // grad W = gradient(d) x_ij
         const double q = 2 * d / R;
         if (q > 2 || q == 0) return 0;
-        return (q > 1 ? q * (12 - 3 * q) - 12 : (9 * q - 12) * q) / (pi * q * std::pow(R, 5));
+        return (q > 1 ? q * (12 - 3 * q) - 12 : (9 * q - 12) * q) / (pi * q * R * R * R * R * R);
     }
 
     void step() {
         const size_t n = x.size();
         fill(cells_, x);
         std::vector<Vec3d> next = v;
+        const double exchange = dt * nu * mass / rho0 / (pi * std::pow(R, 6));
 #pragma omp parallel for
         for (size_t i = 0; i < n; ++i) {
             double density = 0;
             near(cells_, x, x[i], [&](size_t j, Vec3d r) {
                 const double d = length(r);
                 if (j != i) density += mass * W(d);
-                next[i] = next[i] + (dt * nu * mass / rho0 * (R - d) / (pi * std::pow(R, 6))) * (v[j] - v[i]);
+                next[i] = next[i] + (exchange * (R - d)) * (v[j] - v[i]);
             });
             near(wallCells_, walls, x[i], [&](size_t b, Vec3d r) { density += wallMass[b] * W(length(r)); });
             rho[i] = density;
