@@ -31,7 +31,7 @@ fuzz: install
 	@command -v clang++ >/dev/null || { echo "make fuzz needs clang: apt-get install clang" >&2; exit 1; }
 	@mkdir -p build-fuzz/corpus
 	clang++ -std=c++20 -O1 -g1 -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=undefined -Isource \
-		source/core/*.cpp source/scene/*.cpp tests/fuzz/scene_fuzz.cpp $$(pkg-config --cflags --libs hdf5) -lfmt -lgomp -o build-fuzz/scene_fuzz
+		source/core/*.cpp source/scene/*.cpp tests/fuzz/scene_fuzz.cpp $$(pkg-config --cflags --libs hdf5) -lfmt -lassimp -lgomp -o build-fuzz/scene_fuzz
 	build-fuzz/scene_fuzz -max_len=6000 -timeout=10 -artifact_prefix=build-fuzz/ -dict=tests/fuzz/scene.dict \
 		$(or $(ARGS),-max_total_time=600 -print_final_stats=1 build-fuzz/corpus configs configs/test configs/validation)
 

@@ -1,9 +1,10 @@
 #pragma once
-// Surfaces for tests, as the text of OBJ files.
+// Surfaces for tests, as the text of files.
 #include "core/vec.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
 #include <map>
 #include <numbers>
@@ -28,10 +29,81 @@ struct Surface {
         }
         return out.str();
     }
+    std::string textAsPly() const {
+        std::ostringstream out;
+        out.precision(9);
+        out << "ply\nformat ascii 1.0\nelement vertex " << vertices.size()
+            << "\nproperty float x\nproperty float y\nproperty float z\nelement face "
+            << faces.size() << "\nproperty list uchar int vertex_indices\nend_header\n";
+        for (const Vec3d& p : vertices) out << p.x << " " << p.y << " " << p.z << "\n";
+        for (const auto& face : faces) {
+            out << face.size();
+            for (int v : face) out << " " << v;
+            out << "\n";
+        }
+        return out.str();
+    }
+    // Of triangles only.
+    std::string textAsStl() const {
+        std::ostringstream out;
+        out.precision(9);
+        out << "solid surface\n";
+        for (const auto& face : faces) {
+            out << "facet normal 0 0 0\nouter loop\n";
+            for (int v : face)
+                out << "vertex " << vertices[size_t(v)].x << " " << vertices[size_t(v)].y << " "
+                    << vertices[size_t(v)].z << "\n";
+            out << "endloop\nendfacet\n";
+        }
+        out << "endsolid surface\n";
+        return out.str();
+    }
+    std::string textAsBinaryStl() const {
+        std::string out(80, ' ');
+        const auto add = [&](const auto& value) {
+            out.append(reinterpret_cast<const char*>(&value), sizeof(value));
+        };
+        add(uint32_t(faces.size()));
+        for (const auto& face : faces) {
+            add(Vec3{});
+            for (int v : face) add(toFloat(vertices[size_t(v)]));
+            add(uint16_t(0));
+        }
+        return out;
+    }
     // The path of a file with it.
     std::string write(const std::string& path) const {
         std::ofstream(path) << text();
         return path;
+    }
+    // Another one beside this one, with corners of its own.
+    void add(const Surface& other) {
+        const int first = int(vertices.size());
+        vertices.insert(vertices.end(), other.vertices.begin(), other.vertices.end());
+        for (std::vector<int> face : other.faces) {
+            for (int& v : face) v += first;
+            faces.push_back(std::move(face));
+        }
+    }
+    // Convex faces as triangles: from a corner, or from a point in the middle.
+    Surface inTriangles(bool fromMiddle) const {
+        Surface s{vertices, {}};
+        for (const auto& face : faces) {
+            Vec3d middle;
+            for (int v : face) middle = middle + (1.0 / double(face.size())) * vertices[size_t(v)];
+            const int at = fromMiddle ? int(s.vertices.size()) : face[0];
+            if (fromMiddle) s.vertices.push_back(middle);
+            for (size_t k = 0; k < face.size(); ++k)
+                if (const int from = face[k], to = face[(k + 1) % face.size()];
+                    from != at && to != at)
+                    s.faces.push_back({at, from, to});
+        }
+        return s;
+    }
+    Surface inverted() const {
+        Surface s = *this;
+        for (auto& face : s.faces) std::reverse(face.begin(), face.end());
+        return s;
     }
 };
 

@@ -42,6 +42,21 @@ constexpr double SmallestSupport = 1.5;
 
 std::string bodyPath(size_t index) { return fmt::format("fluid.bodies[{}]", index); }
 
+// Places in a scene are floats.
+void requirePlaces(const Scene& scene) {
+    for (int k = 0; k < scene.simulation.dimensions; ++k) {
+        const double farthest =
+            std::max(std::abs(scene.domain.min[k]), std::abs(scene.domain.max[k]));
+        const double step = farthest * double(std::numeric_limits<float>::epsilon());
+        if (step > 0.01 * double(scene.simulation.spacing))
+            refuse("domain",
+                   fmt::format("reaches {} m from 0 along {}, where numbers are {:.2g} m apart, "
+                               "too coarse for a simulation.spacing of {} m; move the scene "
+                               "near 0, meshes by their offset, or raise simulation.spacing",
+                               farthest, "xyz"[k], step, scene.simulation.spacing));
+    }
+}
+
 void checkDomain(const Scene& scene) {
     const Vec3 size = scene.domain.max - scene.domain.min;
     const float R = supportRadius(scene);
@@ -65,6 +80,7 @@ void checkDomain(const Scene& scene) {
                        "lower simulation.spacing",
                        size[k], axis, R));
     }
+    requirePlaces(scene);
     if (scene.simulation.support < SmallestSupport)
         refuse("simulation.support",
                fmt::format("{} leaves particles without neighbours; use {} to 6",
@@ -163,12 +179,14 @@ void checkMovingFace(const Scene& scene) {
 
 void checkBody(const Scene& scene, size_t index) {
     const Body& body = scene.fluid.bodies[index];
-    if (body.shape == Shape::Plane || body.shape == Shape::Mesh)
-        refuse(bodyPath(index) + ".shape", fmt::format("a {} is for solids; name another shape", enumNames(Shape())[size_t(body.shape)]));
+    if (body.shape == Shape::Plane)
+        refuse(bodyPath(index) + ".shape", "a plane is for solids; name another shape");
     if (body.shape == Shape::File) return;   // when it is known to fit into memory
+    if (body.shape == Shape::Mesh) checkMesh(scene, body, bodyPath(index));
+    const Vec3 half = toFloat(halfExtent(body)), middle = toFloat(convexOf(body, 3).middle);
     const bool cornered = body.shape == Shape::Block || body.shape == Shape::Wedge;
-    const Vec3 half = toFloat(halfExtent(body));
-    const Vec3 low = cornered ? body.min : body.center - half, high = cornered ? body.max : body.center + half;
+    const Vec3 low = cornered ? body.min : middle - half,
+               high = cornered ? body.max : middle + half;
     for (int k = 0; k < 3; ++k) {
         const char axis = "xyz"[k];
         if (k >= scene.simulation.dimensions) continue;

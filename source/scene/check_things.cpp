@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace spindrift {
 namespace {
@@ -42,16 +43,36 @@ void checkPlane(const Scene& scene, const Solid& plane, size_t index) {
     if (!plane.name.empty()) requireColumnName(scene.solids, index, "solids");
 }
 
-void checkMesh(const Scene& scene, size_t index) {
-    const Solid& solid = scene.solids[index];
-    if (solid.shape != Shape::Mesh) return;
-    const std::string path = fmt::format("solids[{}]", index);
-    if (scene.simulation.dimensions == 2) refuse(path + ".shape", "a mesh has three dimensions; use another shape, or simulation.dimensions 3");
-    try {
-        readMesh(solid.path)->fieldSpacing(scene.simulation.spacing / solid.scale);
-    } catch (const Error& error) { refuse(path + ".path", error.what()); }
-    const Vec3d half = halfExtent(solid);
-    if (length(half) > 1e4) refuse(path + ".scale", fmt::format("the mesh is {:.3g} m large, more than 2e4; lower it", 2 * length(half)));
+double longest(Vec3d size) { return std::max({size.x, size.y, size.z}); }
+
+// Files are often in millimetres or inches, and don't say so.
+void requireUnits(const Scene& scene, const Form& form, const std::string& path) {
+    constexpr double MostDomains = 20;
+    const double extent = 2 * longest(halfExtent(form)), room = longest(scene.domain.size());
+    if (extent <= MostDomains * room) return;
+    constexpr std::pair<double, const char*> Units[] = {
+        {1e-3, "millimetres"}, {0.0254, "inches"}, {0.01, "centimetres"}};
+    const auto unit = std::find_if(std::begin(Units), std::end(Units),
+                                   [&](const auto& u) { return extent * u.first <= 2 * room; });
+    const std::string advice = unit == std::end(Units)
+                                   ? "lower it"
+                                   : fmt::format("if the file is in {}, set it to {:g}",
+                                                 unit->second, double(form.scale) * unit->first);
+    refuse(path + ".scale", fmt::format("the mesh is {:.4g} m large, the domain {:.4g} m; {}",
+                                        extent, room, advice));
+}
+
+// What a mesh that lies elsewhere is to be moved by.
+std::string placeAdvice(const Scene& scene, const Form& form) {
+    const Vec3d middle = convexOf(form, 3).middle, half = halfExtent(form), low = middle - half,
+                high = middle + half;
+    const Vec3d offset =
+        toDouble(form.offset) + toDouble(scene.domain.min) + 0.5 * scene.domain.size() - middle;
+    return fmt::format(
+        "lies from ({:.7g}, {:.7g}, {:.7g}) to ({:.7g}, {:.7g}, {:.7g}) m, outside the domain; the "
+        "offset [{:.7g}, {:.7g}, {:.7g}] would put it into "
+        "the domain's middle",
+        low.x, low.y, low.z, high.x, high.y, high.z, offset.x, offset.y, offset.z);
 }
 
 // Springs that hold solids apart would throw them about if they began in each other.
@@ -96,6 +117,8 @@ void checkSolid(const Scene& scene, size_t index) {
             refuse(path, fmt::format("leaves no room for fluid along {}, a periodic axis; shorten it", "xyz"[k]));
         outside |= middle[k] + half[k] < scene.domain.min[k] || middle[k] - half[k] > scene.domain.max[k];
     }
+    if (outside && !solid.moves() && solid.shape == Shape::Mesh)
+        refuse(path + ".offset", "the mesh " + placeAdvice(scene, solid));
     if (outside && !solid.moves()) refuse(path, "lies outside the domain and does not move; move it inside");
     if (scene.simulation.dimensions == 2 && solid.shape == Shape::Cylinder && solid.axis != Axis::Z)
         refuse(path + ".axis", "in two dimensions a cylinder is a circle about z; use z");
@@ -168,8 +191,35 @@ void checkApart(const Scene& scene) {
 
 }  // namespace
 
+void checkMesh(const Scene& scene, const Form& form, const std::string& path) {
+    if (scene.simulation.dimensions == 2)
+        refuse(path + ".shape",
+               "a mesh has three dimensions; use another shape, or simulation.dimensions 3");
+    try {
+        readMesh(form.path);
+    } catch (const Error& error) { refuse(path + ".path", error.what()); }
+    requireUnits(scene, form, path);
+    const double step =
+        longest({std::abs(form.offset.x), std::abs(form.offset.y), std::abs(form.offset.z)}) *
+        double(std::numeric_limits<float>::epsilon());
+    if (step > 0.05 * double(scene.simulation.spacing))
+        refuse(path + ".offset",
+               fmt::format("is so large that it is rounded to {:.2g} m, too coarse for a "
+                           "simulation.spacing of {} m; move the origin of the file "
+                           "nearer to the mesh",
+                           step, scene.simulation.spacing));
+}
+
 void checkMeshes(const Scene& scene) {
-    for (size_t i = 0; i < scene.solids.size(); ++i) checkMesh(scene, i);
+    for (size_t i = 0; i < scene.solids.size(); ++i) {
+        const Solid& solid = scene.solids[i];
+        if (solid.shape != Shape::Mesh) continue;
+        const std::string path = fmt::format("solids[{}]", i);
+        checkMesh(scene, solid, path);
+        try {
+            readMesh(solid.path)->fieldSpacing(scene.simulation.spacing / solid.scale);
+        } catch (const Error& error) { refuse(path + ".path", error.what()); }
+    }
 }
 
 void checkSolids(const Scene& scene) {

@@ -26,7 +26,10 @@ void requireColumnName(const std::vector<Member>& list, size_t index, const std:
         if (list[other].name == name) refuse(at, fmt::format("\"{}\" is the name of {}[{}] too; give each its own", name, path, other));
 }
 
-// Whether their files are there and can be worked with: before anything else looks at them.
+// Whether its file is there, a closed surface, and of a size that fits the domain.
+void checkMesh(const Scene&, const Form&, const std::string& path);
+// The same of all solids', and that collisions can work with them: before anything else looks at
+// them.
 void checkMeshes(const Scene&);
 void checkSolids(const Scene&);
 // Objects, what holds them, and what cuts them.

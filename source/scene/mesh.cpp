@@ -1,241 +1,284 @@
 #include "scene/mesh.h"
 
 #include "core/error.h"
+#include "scene/mesh_shells.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <map>
-#include <mutex>
 #include <numeric>
-#include <string_view>
-#include <tuple>
 
 namespace spindrift {
 namespace {
 
-constexpr size_t LargestFile = 512 << 20, MostTriangles = 5'000'000;
-constexpr double Farthest = 1e6;   // that a coordinate may lie from 0
-constexpr int TrianglesInBox = 4;
+constexpr double GridCells =
+    1 << 30;  // along the longest side: products of two places fit into 64 bits
 // Of a field: nodes, and those beyond the surface on each side.
 constexpr double MostNodes = 1 << 24, MostNodesAlong = 4096;
 constexpr int NodesBeyond = 2;
 
-[[noreturn]] void refuse(const std::string& path, const std::string& what) {
-    throw Error(Exit::Scene, fmt::format("{}: {}", path, what));
+std::string shown(Vec3d p) { return fmt::format("({:.9g}, {:.9g}, {:.9g})", p.x, p.y, p.z); }
+
+template <class T>
+std::vector<T> inOrder(const std::vector<T>& things, const std::vector<int>& order) {
+    std::vector<T> out;
+    out.reserve(things.size());
+    for (const int i : order) out.push_back(things[size_t(i)]);
+    return out;
 }
 
-std::string shown(Vec3d p) { return fmt::format("({:g}, {:g}, {:g})", p.x, p.y, p.z); }
-Vec3d lower(Vec3d a, Vec3d b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
-Vec3d upper(Vec3d a, Vec3d b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
+using GridPlace = std::array<int64_t, 2>;
+// Twice the area of the triangle a, b, p, exact.
+int64_t areaOf(GridPlace a, GridPlace b, GridPlace p) {
+    return (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
+}
+// Its sign with p moved a bit along y and by far less along z (simulation of simplicity,
+// Edelsbrunner & Muecke 1990), so that every line through a closed surface goes in as often as out,
+// through edges and corners too.
+int signOf(int64_t area, GridPlace a, GridPlace b) {
+    if (area == 0) area = a[1] != b[1] ? a[1] - b[1] : b[0] - a[0];
+    return area > 0 ? 1 : area < 0 ? -1 : 0;
+}
 
-// An edge between two vertices, in the direction from the first to the second in which a triangle uses it.
-struct Edge {
-    int low, high;
-    bool upward;
-    int place;   // 3 triangle + corner
+struct Crossing {
+    double x;
+    int shell, sign;
 };
 
-std::vector<Edge> edgesOf(const std::vector<Mesh::Triangle>& triangles) {
-    std::vector<Edge> edges;
-    for (size_t t = 0; t < triangles.size(); ++t)
-        for (size_t k = 0; k < 3; ++k) {
-            const int from = triangles[t][k], to = triangles[t][(k + 1) % 3];
-            edges.push_back({std::min(from, to), std::max(from, to), from < to, int(3 * t + k)});
-        }
-    std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
-        return std::tie(a.low, a.high, a.place) < std::tie(b.low, b.high, b.place);
-    });
-    return edges;
-}
-
-// Calls f(first, end) for the uses of each edge.
-template <class F> void forUses(const std::vector<Edge>& edges, const F& f) {
-    for (size_t i = 0, end; i < edges.size(); i = end) {
-        for (end = i; end < edges.size() && edges[end].low == edges[i].low && edges[end].high == edges[i].high;) ++end;
-        f(i, end);
-    }
-}
-
-void requireClosed(const std::string& name, const std::vector<Vec3d>& vertices, const std::vector<Mesh::Triangle>& triangles) {
-    const std::vector<Edge> edges = edgesOf(triangles);
-    size_t wrong = 0, first = 0, uses = 0;
-    forUses(edges, [&](size_t i, size_t end) {
-        if (end - i == 2 && edges[i].upward != edges[i + 1].upward) return;
-        if (wrong++ == 0) first = i, uses = end - i;
-    });
-    if (wrong == 0) return;
-    const std::string edge = shown(vertices[size_t(edges[first].low)]) + " to " + shown(vertices[size_t(edges[first].high)]);
-    const std::string owners = uses == 2 ? "two triangles that face opposite sides" : uses == 1 ? "one triangle" : fmt::format("{} triangles", uses);
-    refuse(name, fmt::format("is not closed: the edge from {} belongs to {}, each must to two that face the same side ({} such edge{}); close the "
-                             "surface where it was made", edge, owners, wrong, wrong == 1 ? "" : "s"));
-}
-
-double boxDistance2(Vec3d low, Vec3d high, Vec3d p) {
-    double sum = 0;
-    for (int k = 0; k < 3; ++k) {
-        const double beyond = std::max({low[k] - p[k], p[k] - high[k], 0.0});
-        sum += beyond * beyond;
-    }
-    return sum;
+// Sets that grow together.
+int rootOf(std::vector<int>& parents, int i) {
+    while (parents[size_t(i)] != i) i = parents[size_t(i)] = parents[size_t(parents[size_t(i)])];
+    return i;
 }
 
 }  // namespace
 
-Mesh::Mesh(const std::string& name, std::vector<Vec3d> vertices, std::vector<Triangle> triangles)
-    : vertices_(std::move(vertices)), triangles_(std::move(triangles)) {
-    join(name);
-    if (triangles_.empty()) refuse(name, "has no faces; it needs lines f");
-    requireClosed(name, vertices_, triangles_);
+Mesh::Mesh(const std::string& name, const std::vector<Vec3d>& vertices,
+           const std::vector<Triangle>& triangles, double roundOff) {
+    ShellNet net = findShells(name, vertices, triangles, roundOff);
+    vertices_ = std::move(net.vertices), triangles_ = std::move(net.triangles),
+    precision_ = net.precision;
+    bodies_.resize(size_t(net.shellCount));
+    std::iota(bodies_.begin(), bodies_.end(), 0);
+    std::vector<Box> boxes;
+    for (int t = 0; t < int(triangles_.size()); ++t) boxes.push_back(facetOf(t).box());
+    const std::vector<int> order = triangleTree_.build(boxes);
+    triangles_ = inOrder(triangles_, order), shells_ = inOrder(net.shells, order);
+    findBox();
+    findSurface();
+}
+
+Facet Mesh::facetOf(int triangle) const {
+    const Triangle& t = triangles_[size_t(triangle)];
+    return Facet(vertices_[size_t(t[0])], vertices_[size_t(t[1])], vertices_[size_t(t[2])]);
+}
+
+void Mesh::findBox() {
     low_ = high_ = vertices_[size_t(triangles_[0][0])];
     for (const Triangle& t : triangles_)
         for (int v : t) low_ = lower(low_, vertices_[size_t(v)]), high_ = upper(high_, vertices_[size_t(v)]);
-    const double volume = weigh().volume;
-    if (!(std::abs(volume) > 1e-9 * std::pow(length(high_ - low_), 3))) refuse(name, "encloses no volume; thicken it");
-    if (volume < 0)
-        for (Triangle& t : triangles_) std::swap(t[1], t[2]);
-    boxes_.reserve(triangles_.size());
-    divide(0, int(triangles_.size()));
-    findNormals();
+    for (const Vec3d& p : vertices_) onGrid_.push_back(gridPlace(p.y, p.z));
 }
 
-// Files write a corner once for each of its faces now and then.
-void Mesh::join(const std::string& name) {
-    std::vector<int> order(vertices_.size()), same(vertices_.size());
-    std::iota(order.begin(), order.end(), 0);
-    auto key = [&](int v) { const Vec3d& p = vertices_[size_t(v)]; return std::tie(p.x, p.y, p.z); };
-    std::sort(order.begin(), order.end(), [&](int a, int b) { return key(a) < key(b) || (key(a) == key(b) && a < b); });
-    for (size_t i = 0; i < order.size(); ++i) {
-        const bool first = i == 0 || key(order[i]) != key(order[i - 1]);
-        same[size_t(order[i])] = first ? order[i] : same[size_t(order[i - 1])];
+std::array<int64_t, 2> Mesh::gridPlace(double y, double z) const {
+    const Vec3d size = high_ - low_;
+    const double cells = GridCells / std::max({size.x, size.y, size.z});
+    const auto along = [&](double a, double low) {
+        return int64_t(std::llround(std::clamp((a - low) * cells, -1.0, GridCells + 1)));
+    };
+    return {along(y, low_.y), along(z, low_.z)};
+}
+
+// Where the line of these y and z enters and leaves the solid, by x: the shells' winding numbers
+// change there.
+std::vector<double> Mesh::changesAlong(double y, double z) const {
+    const GridPlace p = gridPlace(y, z);
+    const double room =
+        2 * std::max({high_.x - low_.x, high_.y - low_.y, high_.z - low_.z}) / GridCells;
+    std::vector<Crossing> crossings;
+    triangleTree_.visit(
+        [&](const Box& b) {
+            return y >= b.low.y - room && y <= b.high.y + room && z >= b.low.z - room &&
+                   z <= b.high.z + room;
+        },
+        [&](int i) {
+            const Triangle& t = triangles_[size_t(i)];
+            const GridPlace a = onGrid_[size_t(t[0])], b = onGrid_[size_t(t[1])],
+                            c = onGrid_[size_t(t[2])];
+            const int64_t A = areaOf(b, c, p), B = areaOf(c, a, p), C = areaOf(a, b, p);
+            const int sign = signOf(A, b, c);
+            if (sign == 0 || signOf(B, c, a) != sign || signOf(C, a, b) != sign) return;
+            const auto x = [&](int k) { return vertices_[size_t(t[size_t(k)])].x - low_.x; };
+            const double at = (double(A) * x(0) + double(B) * x(1) + double(C) * x(2)) /
+                              (double(A) + double(B) + double(C));
+            crossings.push_back({low_.x + at, shells_[size_t(i)], -sign});
+        });
+    std::sort(crossings.begin(), crossings.end(),
+              [](const Crossing& a, const Crossing& b) { return a.x < b.x; });
+    std::vector<double> changes;
+    std::vector<std::pair<int, int>> windings,
+        bodies;  // of each shell, and in how many shells of each body the line is
+    const auto countOf = [](auto& list, int key) -> int& {
+        const auto found = std::find_if(list.begin(), list.end(),
+                                        [&](const auto& entry) { return entry.first == key; });
+        return found != list.end() ? found->second : list.emplace_back(key, 0).second;
+    };
+    bool inside = false;
+    for (const Crossing& c : crossings) {
+        int& winding = countOf(windings, c.shell);
+        const bool before = winding != 0, after = (winding += c.sign) != 0;
+        if (before == after) continue;
+        int& shells = countOf(bodies, bodies_[size_t(c.shell)]);
+        const bool was = shells > 0, is = (shells += after ? 1 : -1) > 0;
+        if (was != is) changes.push_back(c.x), inside = !inside;
     }
-    for (Triangle& t : triangles_)
-        for (int& v : t) {
-            if (v < 0 || v >= int(vertices_.size())) refuse(name, "a face has a corner that is not there");
-            v = same[size_t(v)];
-        }
-    std::erase_if(triangles_, [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
+    return changes;
 }
 
-// Angle-weighted ones at corners and sums at edges tell inside from outside wherever the nearest point lies (Baerentzen & Aanaes 2005).
-void Mesh::findNormals() {
-    faceNormals_.resize(triangles_.size());
-    vertexNormals_.assign(vertices_.size(), {});
-    edgeNormals_.resize(3 * triangles_.size());
-    for (int t = 0; t < int(triangles_.size()); ++t) {
-        const Vec3d n = cross(corner(t, 1) - corner(t, 0), corner(t, 2) - corner(t, 0));
-        const double twice = length(n);
-        area_ += twice / 2;
-        faceNormals_[size_t(t)] = twice > 0 ? (1 / twice) * n : Vec3d{};
-        for (int k = 0; k < 3; ++k) {
-            const Vec3d a = corner(t, k + 1) - corner(t, k), b = corner(t, k + 2) - corner(t, k);
-            const double angle = std::atan2(length(cross(a, b)), dot(a, b));
-            Vec3d& sum = vertexNormals_[size_t(triangles_[size_t(t)][size_t(k)])];
-            sum = sum + angle * faceNormals_[size_t(t)];
-        }
+bool Mesh::holds(Vec3d p) const {
+    for (int k = 0; k < 3; ++k)
+        if (p[k] < low_[k] || p[k] > high_[k]) return false;
+    const std::vector<double> changes = changesAlong(p.y, p.z);
+    return (std::lower_bound(changes.begin(), changes.end(), p.x) - changes.begin()) % 2 == 1;
+}
+
+// Of the triangles those parts with the solid on one side only, and that side behind them.
+void Mesh::findSurface() {
+    const int count = int(triangles_.size());
+    const double tolerance = precision_;
+    std::vector<std::vector<Segment>> cuts(static_cast<size_t>(count));
+    std::vector<std::vector<int>> covers(static_cast<size_t>(count));  // before it in the list
+    std::vector<std::pair<int, int>> touching;                         // shells
+    bool simple = bodies_.size() == 1;
+#pragma omp parallel for schedule(dynamic, 64)
+    for (int i = 0; i < count; ++i) {
+        const Facet t = facetOf(i);
+        const Box box = t.box();
+        triangleTree_.visit(
+            [&](const Box& b) {
+                for (int k = 0; k < 3; ++k)
+                    if (b.low[k] > box.high[k] + tolerance || b.high[k] < box.low[k] - tolerance)
+                        return false;
+                return true;
+            },
+            [&](int j) {
+                int shared = 0;
+                for (const int v : triangles_[size_t(i)])
+                    for (const int w : triangles_[size_t(j)]) shared += v == w;
+                const bool sameShell = shells_[size_t(i)] == shells_[size_t(j)];
+                if (i == j || (sameShell && shared == 2)) return;
+                const Meeting meeting = meet(t, facetOf(j), tolerance, cuts[size_t(i)]);
+                if (meeting == Meeting::Cover && j < i) covers[size_t(i)].push_back(j);
+                if (meeting == Meeting::None || sameShell) return;
+#pragma omp critical
+                touching.push_back({shells_[size_t(i)], shells_[size_t(j)]});
+            });
     }
-    const std::vector<Edge> edges = edgesOf(triangles_);
-    forUses(edges, [&](size_t i, size_t end) {
-        Vec3d sum;
-        for (size_t e = i; e < end; ++e) sum = sum + faceNormals_[size_t(edges[e].place / 3)];
-        for (size_t e = i; e < end; ++e) edgeNormals_[size_t(edges[e].place)] = sum;
-    });
-}
-
-// Boxes of few triangles that lie near each other: halves, by their middles along the longest side.
-int Mesh::divide(int first, int count) {
-    const int index = int(boxes_.size());
-    Box box{corner(first, 0), corner(first, 0), first, count, -1};
-    for (int t = first; t < first + count; ++t)
-        for (int k = 0; k < 3; ++k) box.low = lower(box.low, corner(t, k)), box.high = upper(box.high, corner(t, k));
-    boxes_.push_back(box);
-    if (count <= TrianglesInBox) return index;
-    const Vec3d size = box.high - box.low;
-    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2, half = count / 2;
-    auto middle = [&](const Triangle& t) { return vertices_[size_t(t[0])][axis] + vertices_[size_t(t[1])][axis] + vertices_[size_t(t[2])][axis]; };
-    const auto begin = triangles_.begin() + first;
-    std::nth_element(begin, begin + half, begin + count, [&](const Triangle& a, const Triangle& b) { return std::pair(middle(a), a) < std::pair(middle(b), b); });
-    boxes_[size_t(index)].count = 0;
-    divide(first, half);
-    const int right = divide(first + half, count - half);
-    boxes_[size_t(index)].right = right;
-    return index;
-}
-
-// Above the triangle the nearest point is p's own image, otherwise it lies on an edge that p is beyond.
-Mesh::Touch Mesh::touch(int t, Vec3d p) const {
-    const Vec3d n = faceNormals_[size_t(t)];
-    Touch best{1e300, {}, 6};
-    bool above = dot(n, n) > 0;
-    for (int k = 0; k < 3; ++k) {
-        const Vec3d a = corner(t, k), along = corner(t, k + 1) - a, from = p - a;
-        if (dot(n, n) > 0 && dot(cross(along, n), from) <= 0) continue;
-        above = false;
-        const double share = std::clamp(dot(from, along) / dot(along, along), 0.0, 1.0);
-        const Vec3d at = share < 1 ? a + share * along : corner(t, k + 1);
-        const double d2 = dot(p - at, p - at);
-        if (d2 < best.distance2) best = {d2, at, share <= 0 ? k : share >= 1 ? (k + 1) % 3 : 3 + k};
+    for (const auto& [a, b] : touching) bodies_[size_t(rootOf(bodies_, a))] = rootOf(bodies_, b);
+    for (size_t s = 0; s < bodies_.size(); ++s) bodies_[s] = rootOf(bodies_, int(s));
+    for (size_t i = 0; i < cuts.size(); ++i)
+        simple = simple && cuts[i].empty() && covers[i].empty();
+    std::vector<std::vector<Facet>> parts(static_cast<size_t>(count));
+#pragma omp parallel for schedule(dynamic, 64)
+    for (int i = 0; i < count; ++i) {
+        const Facet t = facetOf(i);
+        if (simple)
+            parts[size_t(i)] = {t};
+        else if (t.area() > 0)
+            for (const auto& polygon : cutUp(t, cuts[size_t(i)], tolerance))
+                addSurface(t, polygon, covers[size_t(i)], parts[size_t(i)]);
     }
-    if (!above) return best;
-    const double height = dot(n, p - corner(t, 0));
-    return {height * height, p - height * n, 6};
+    for (const auto& part : parts) surface_.insert(surface_.end(), part.begin(), part.end());
+    std::vector<Box> boxes;
+    for (const Facet& f : surface_) boxes.push_back(f.box()), area_ += f.area();
+    surface_ = inOrder(surface_, surfaceTree_.build(boxes));
 }
 
-Mesh::Nearest Mesh::nearest(Vec3d p, int& triangle) const {
-    Touch best{1e300, {}, 6};
-    if (triangle >= 0) best = touch(triangle, p);
-    struct Open { int box; double distance2; } open[64];   // halves make it no deeper than that
-    int count = 0;
-    open[count++] = {0, boxDistance2(low_, high_, p)};
-    while (count > 0) {
-        const Open now = open[--count];
-        if (now.distance2 >= best.distance2) continue;
-        const Box& box = boxes_[size_t(now.box)];
-        for (int t = box.first; t < box.first + box.count; ++t)
-            if (const Touch touched = touch(t, p); touched.distance2 < best.distance2) best = touched, triangle = t;
-        if (box.count > 0) continue;
-        auto other = [&](int b) { return Open{b, boxDistance2(boxes_[size_t(b)].low, boxes_[size_t(b)].high, p)}; };
-        const Open left = other(now.box + 1), right = other(box.right);
-        const bool leftFirst = left.distance2 <= right.distance2;
-        open[count++] = leftFirst ? right : left;
-        open[count++] = leftFirst ? left : right;
-    }
-    const size_t t = size_t(triangle);
-    const Vec3d outward = best.part == 6  ? faceNormals_[t]
-                          : best.part < 3 ? vertexNormals_[size_t(triangles_[t][size_t(best.part)])]
-                                          : edgeNormals_[3 * t + size_t(best.part) - 3];
-    const Vec3d from = p - best.point;
-    const double distance = std::sqrt(best.distance2), sign = dot(from, outward) < 0 ? -1 : 1;
-    const double whole = length(outward);
-    const Vec3d normal = distance > 1e-9 * length(high_ - low_) ? (sign / distance) * from : whole > 0 ? (1 / whole) * outward : Vec3d{0, 1, 0};
-    return {sign * distance, normal};
+// A part of a triangle, unless a triangle before it has it too.
+void Mesh::addSurface(const Facet& t, const std::vector<Vec3d>& polygon,
+                      const std::vector<int>& covers, std::vector<Facet>& out) const {
+    const double beside = 2 * precision_;
+    Vec3d middle;
+    for (const Vec3d& p : polygon) middle = middle + (1.0 / double(polygon.size())) * p;
+    const bool before = holds(middle + beside * t.normal),
+               behind = holds(middle - beside * t.normal);
+    if (before == behind) return;
+    for (const int other : covers)
+        if (facetOf(other).covers(middle, precision_)) return;
+    for (size_t k = 2; k < polygon.size(); ++k)
+        out.push_back(behind ? Facet(polygon[0], polygon[k - 1], polygon[k])
+                             : Facet(polygon[0], polygon[k], polygon[k - 1]));
+}
+
+double Mesh::distance(Vec3d p, int& facet) const {
+    double best2 = 1e300;
+    const auto take = [&](int i) {
+        const Vec3d from = p - surface_[size_t(i)].nearest(p);
+        if (const double d2 = dot(from, from); d2 < best2) best2 = d2, facet = i;
+    };
+    if (const int known = facet; known >= 0) take(known);
+    surfaceTree_.visitNearer(p, best2, take);
+    return std::sqrt(best2);
+}
+
+Mesh::Nearest Mesh::nearest(Vec3d p, int& facet) const {
+    const double far = distance(p, facet);
+    const Facet& f = surface_[size_t(facet)];
+    const double sign = holds(p) ? -1 : 1;
+    return {sign * far, far > precision_ ? (sign / far) * (p - f.nearest(p)) : f.normal};
 }
 
 Mesh::Nearest Mesh::nearest(Vec3d p) const {
-    int triangle = -1;
-    return nearest(p, triangle);
+    int facet = -1;
+    return nearest(p, facet);
 }
 
-// As far below each of many points of the surface as half of `most`, the nearest surface is theirs, unless another one that faces the opposite way is
-// nearer. (Only nearly parallel ones: towards its edge every wedge is thin.)
+// Whether a solid between a point of its surface and one of the opposite surface becomes thinner in
+// a straight line from there to an edge.
+bool Mesh::isTip(Vec3d at, Vec3d normal, Vec3d opposite, Vec3d facing) const {
+    const double cosine = dot(facing, normal), height = dot(facing, opposite - at),
+                 thickness = height / -cosine;
+    const Vec3d across = facing - cosine * normal;  // towards the edge
+    const double slope2 = dot(across, across);
+    if (slope2 < 1e-12) return false;
+    for (const double left : {0.5, 0.25}) {
+        const double depth = -nearest(at + ((1 - left) * height / slope2) * across -
+                                      (0.5 * left * thickness) * normal)
+                                  .distance,
+                     expected = 0.5 * left * thickness;
+        if (depth < 0.5 * expected || depth > 1.5 * expected) return false;
+    }
+    return true;
+}
+
+// As far below each of many points of the surface as half of `most`, the nearest surface is theirs,
+// unless another one that faces the opposite way is nearer. (Only nearly parallel ones, and away
+// from edges: towards its edge every wedge is thin.)
 Mesh::Thinnest Mesh::thinnest(double most) const {
     Thinnest found{most, {}};
+    int foundIn = 0;
     constexpr double Samples = 3e5;
     const double apart = std::max(0.5 * most, std::sqrt(area_ / Samples));
-    for (int t = 0; t < int(triangles_.size()); ++t) {
-        const Vec3d n = faceNormals_[size_t(t)], a = corner(t, 0), ab = corner(t, 1) - a, ac = corner(t, 2) - a;
+#pragma omp parallel for schedule(dynamic, 256)
+    for (int f = 0; f < int(surface_.size()); ++f) {
+        const Facet& facet = surface_[size_t(f)];
+        const Vec3d n = facet.normal, a = facet.corner[0], ab = facet.corner[1] - a,
+                    ac = facet.corner[2] - a;
         const int pieces = 1 + int(std::max({length(ab), length(ac), length(ac - ab)}) / apart);
         for (int i = 0; i < pieces; ++i)
             for (int j = 0; i + j < pieces; ++j) {
                 const Vec3d at = a + ((i + 1.0 / 3) / pieces) * ab + ((j + 1.0 / 3) / pieces) * ac;
-                const Nearest below = nearest(at - 0.5 * most * n);
-                const Vec3d facing = below.normal;
+                const Vec3d under = at - 0.5 * most * n;
+                int nearby = f;
+                if (distance(under, nearby) >= 0.5 * most - precision_) continue;
+                const Nearest below = nearest(under, nearby);
                 const double thickness = 0.5 * most - below.distance;
-                if (dot(facing, n) < -0.95 && thickness < found.thickness) found = {thickness, at};
+                if (dot(below.normal, n) >= -0.95 ||
+                    isTip(at, n, under - below.distance * below.normal, below.normal))
+                    continue;
+#pragma omp critical
+                if (thickness < found.thickness || (thickness == found.thickness && f < foundIn))
+                    found = {thickness, at}, foundIn = f;
             }
     }
     return found;
@@ -269,8 +312,18 @@ DistanceField Mesh::field(double spacing) const {
     DistanceField f{{}, spacing, nodesOf(high_ - low_, spacing), {}};
     const Vec3d middle = 0.5 * (low_ + high_);
     f.low = -0.5 * spacing * Vec3d{double(f.nodes.x - 1), double(f.nodes.y - 1), double(f.nodes.z - 1)};
-    const size_t row = size_t(f.nodes.x), plane = row * size_t(f.nodes.y);
-    f.distances.resize(plane * size_t(f.nodes.z));
+    const size_t row = size_t(f.nodes.x);
+    f.distances.resize(row * size_t(f.nodes.y) * size_t(f.nodes.z));
+    std::vector<std::vector<double>> changes(size_t(f.nodes.y) * size_t(f.nodes.z));  // of each row
+#pragma omp parallel for schedule(dynamic, 16)
+    for (int r = 0; r < int(changes.size()); ++r)
+        changes[size_t(r)] = changesAlong(middle.y + f.low.y + spacing * (r % f.nodes.y),
+                                          middle.z + f.low.z + spacing * (r / f.nodes.y));
+    const auto isInside = [&](double x, size_t r) {
+        return (std::lower_bound(changes[r].begin(), changes[r].end(), x) - changes[r].begin()) %
+                   2 ==
+               1;
+    };
     // Cubes of nodes that are all far from the surface are filled from their middles: outside with what is surely free, inside in a straight line.
     constexpr int Side = 8;
     const Int3 cubes{(f.nodes.x + Side - 1) / Side, (f.nodes.y + Side - 1) / Side, (f.nodes.z + Side - 1) / Side};
@@ -281,16 +334,18 @@ DistanceField Mesh::field(double spacing) const {
         auto at = [&](double i, double j, double k) { return middle + f.low + spacing * Vec3d{x + i, y + j, z + k}; };
         constexpr double half = 0.5 * (Side - 1);
         const Vec3d center = at(half, half, half);
-        int triangle = -1;
-        const Nearest whole = nearest(center, triangle);
+        int facet = -1;
+        const Nearest whole = nearest(center, facet);
         for (int k = 0; k < Side && z + k < f.nodes.z; ++k)
             for (int j = 0; j < Side && y + j < f.nodes.y; ++j)
                 for (int i = 0; i < Side && x + i < f.nodes.x; ++i) {
                     const Vec3d p = at(i, j, k), from = p - center;
-                    const double distance = whole.distance > reach + near    ? whole.distance - length(from)
-                                            : whole.distance < -reach - near ? whole.distance + dot(from, whole.normal)
-                                                                             : nearest(p, triangle).distance;
-                    f.distances[size_t(z + k) * plane + size_t(y + j) * row + size_t(x + i)] = float(distance);
+                    const size_t r = size_t(z + k) * size_t(f.nodes.y) + size_t(y + j);
+                    const double far = whole.distance > reach + near ? whole.distance - length(from)
+                                       : whole.distance < -reach - near
+                                           ? whole.distance + dot(from, whole.normal)
+                                           : distance(p, facet) * (isInside(p.x, r) ? -1 : 1);
+                    f.distances[r * row + size_t(x + i)] = float(far);
                 }
     }
     return f;
@@ -302,8 +357,9 @@ Mesh::Weight Mesh::weigh() const {
     Weight w{};
     Vec3d first;
     double second[3][3] = {};
-    for (const Triangle& t : triangles_) {
-        const Vec3d a = vertices_[size_t(t[0])] - middle, b = vertices_[size_t(t[1])] - middle, c = vertices_[size_t(t[2])] - middle, sum = a + b + c;
+    for (const Facet& f : surface_) {
+        const Vec3d a = f.corner[0] - middle, b = f.corner[1] - middle, c = f.corner[2] - middle,
+                    sum = a + b + c;
         const double six = dot(a, cross(b, c));
         w.volume += six / 6;
         first = first + (six / 24) * sum;
@@ -318,93 +374,6 @@ Mesh::Weight Mesh::weigh() const {
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) w.inertia[i][j] = (i == j ? trace : 0) - second[i][j];
     return w;
-}
-
-namespace {
-
-// The lines of an OBJ file, one after the other.
-class ObjReader {
-public:
-    explicit ObjReader(const std::string& path) : path_(path) {}
-    Mesh read() {
-        std::ifstream stream(path_, std::ios::binary);
-        std::error_code none;
-        if (!stream || !std::filesystem::is_regular_file(path_, none)) refuse(path_, "can't be read; check the path");
-        if (std::filesystem::file_size(path_, none) > LargestFile) refuse(path_, "is larger than 512 MiB; simplify the surface");
-        for (std::string line; std::getline(stream, line);) {
-            ++line_;
-            readLine(line);
-        }
-        return Mesh(path_, std::move(vertices_), std::move(triangles_));
-    }
-
-private:
-    [[noreturn]] void fail(const std::string& what) const { refuse(path_, fmt::format("line {}: {}", line_, what)); }
-    void readLine(std::string_view line) {
-        const std::string_view kind = takeWord(line);
-        if (kind == "v") readVertex(line);
-        if (kind == "f") readFace(line);
-    }
-    static std::string_view takeWord(std::string_view& line) {
-        constexpr const char* Blank = " \t\r";
-        const size_t begin = std::min(line.find_first_not_of(Blank), line.size()), end = std::min(line.find_first_of(Blank, begin), line.size());
-        const std::string_view word = line.substr(begin, end - begin);
-        line.remove_prefix(end);
-        return word;
-    }
-    template <class T> static bool parse(std::string_view word, T& value) {
-        if (word.starts_with('+')) word.remove_prefix(1);
-        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-        return error == std::errc() && end == word.data() + word.size();
-    }
-    static std::string brief(std::string_view word) { return std::string(word.substr(0, 40)); }
-    void readVertex(std::string_view line) {
-        Vec3d p;
-        for (int k = 0; k < 3; ++k) {
-            const std::string_view word = takeWord(line);
-            if (!parse(word, p[k]) || !std::isfinite(p[k])) fail(fmt::format("{} = \"{}\" is no number; a vertex is v x y z", "xyz"[k], brief(word)));
-            if (std::abs(p[k]) > Farthest) fail(fmt::format("{} = {:g} is farther than {:g} from 0; move or scale it", "xyz"[k], p[k], Farthest));
-        }
-        vertices_.push_back(p);
-    }
-    // v, v/vt, v//vn or v/vt/vn; from 1 on, or from the last one backward.
-    int readCorner(std::string_view word) const {
-        int64_t index = 0;
-        const auto count = int64_t(vertices_.size());
-        if (!parse(word.substr(0, word.find('/')), index) || index == 0) fail(fmt::format("\"{}\" is no corner of a face; give vertex numbers from 1 on", brief(word)));
-        if (index > count || index < -count) fail(fmt::format("vertex {} of {} that are there so far; mend the face", index, count));
-        return int(index > 0 ? index - 1 : count + index);
-    }
-    void readFace(std::string_view line) {
-        std::vector<int> corners;
-        for (std::string_view word = takeWord(line); !word.empty(); word = takeWord(line)) corners.push_back(readCorner(word));
-        if (corners.size() < 3) fail(fmt::format("a face of {} corners; it needs three", corners.size()));
-        for (size_t k = 2; k < corners.size(); ++k) triangles_.push_back({corners[0], corners[k - 1], corners[k]});
-        if (triangles_.size() > MostTriangles) fail(fmt::format("more than {} triangles; simplify the surface", MostTriangles));
-    }
-
-    const std::string& path_;
-    int line_ = 0;
-    std::vector<Vec3d> vertices_;
-    std::vector<Mesh::Triangle> triangles_;
-};
-
-}  // namespace
-
-std::shared_ptr<const Mesh> readMesh(const std::string& path) {
-    struct Known { std::filesystem::file_time_type time; uintmax_t size; std::shared_ptr<const Mesh> mesh; };
-    static std::mutex mutex;
-    static std::map<std::string, Known> known;
-    if (path.empty()) refuse("\"\"", "no file is named; give its path");
-    const std::lock_guard lock(mutex);
-    std::error_code none, gone;
-    const auto time = std::filesystem::last_write_time(path, none);
-    const uintmax_t size = std::filesystem::file_size(path, gone);
-    Known& k = known[path];
-    // A run goes on when the file is gone.
-    if (k.mesh && (none || gone || (k.time == time && k.size == size))) return k.mesh;
-    k = {time, size, std::make_shared<const Mesh>(ObjReader(path).read())};
-    return k.mesh;
 }
 
 }  // namespace spindrift

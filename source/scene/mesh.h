@@ -1,8 +1,10 @@
 #pragma once
 // Solids of triangles: read from a file, checked to be closed, weighed, and asked how far away they are.
 #include "core/vec.h"
+#include "scene/facet.h"
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,19 +14,25 @@ namespace spindrift {
 // Distances from a surface at the nodes of a lattice around it, x first, in the units of its file; from the middle of its bounding box on.
 struct DistanceField { Vec3d low; double spacing; Int3 nodes; std::vector<float> distances; };
 
-// A closed surface, in the units of its file.
+// The surface of a solid, in the units of its file.
+//
+// A file has closed shells. Those that cross or touch each other are one body: what is in any of
+// them. A body in another one is a hollow there, and one in the hollow is solid again. How a shell
+// is wound does not matter.
 class Mesh {
 public:
     using Triangle = std::array<int, 3>;   // corners, against the clock seen from outside
 
-    // Corners at one place become one; triangles without area go, and if all face inward they are turned round. Throws Error (Scene), one
-    // line that begins with `name`, unless each edge belongs to two triangles, which use it in opposite directions.
-    Mesh(const std::string& name, std::vector<Vec3d> vertices, std::vector<Triangle> triangles);
+    // roundOff: how wrong coordinates may be. Throws Error (Scene), one line that begins with
+    // `name`, when the triangles enclose nothing or are open; see findShells.
+    Mesh(const std::string& name, const std::vector<Vec3d>& vertices,
+         const std::vector<Triangle>& triangles, double roundOff = 0);
 
-    // How far outside p is (inside: minus the depth), and the outward normal there: exact. Queries of points that lie near each other hand on the triangle
-    // that was nearest, -1 at first.
+    // How far outside p is (inside: minus the depth), and the outward normal there: exact. Queries
+    // of points that lie near each other hand on the part of the surface that was nearest, -1 at
+    // first.
     struct Nearest { double distance; Vec3d normal; };
-    Nearest nearest(Vec3d p, int& triangle) const;
+    Nearest nearest(Vec3d p, int& facet) const;
     Nearest nearest(Vec3d p) const;
 
     // Where opposite sides face each other nearer than `most`, how near that is, and where; otherwise `most`.
@@ -36,6 +44,7 @@ public:
     double fieldSpacing(double apart) const;
     DistanceField field(double spacing) const;
 
+    // The shells, also where they are inside of each other.
     const std::vector<Vec3d>& vertices() const { return vertices_; }
     const std::vector<Triangle>& triangles() const { return triangles_; }
     Vec3d low() const { return low_; }
@@ -47,26 +56,30 @@ public:
     Weight weigh() const;
 
 private:
-    // The nearest point of a triangle, and on which part of it that lies: a corner 0, 1, 2, the edge from there on 3, 4, 5, inside 6.
-    struct Touch { double distance2; Vec3d point; int part; };
-    struct Box { Vec3d low, high; int first, count, right; };   // of triangles; without any there is a left box, the next one, and a right one
-
-    void join(const std::string& name);
-    void findNormals();
-    int divide(int first, int count);
-    Touch touch(int triangle, Vec3d p) const;
-    Vec3d corner(int triangle, int k) const { return vertices_[size_t(triangles_[size_t(triangle)][size_t(k % 3)])]; }
+    Facet facetOf(int triangle) const;
+    double distance(Vec3d p, int& facet) const;
+    std::vector<double> changesAlong(double y, double z) const;
+    bool holds(Vec3d p) const;
+    void findBox();
+    void findSurface();
+    void addSurface(const Facet&, const std::vector<Vec3d>& polygon, const std::vector<int>& covers,
+                    std::vector<Facet>& out) const;
+    std::array<int64_t, 2> gridPlace(double y, double z) const;
+    bool isTip(Vec3d at, Vec3d normal, Vec3d opposite, Vec3d facing) const;
 
     std::vector<Vec3d> vertices_;
     std::vector<Triangle> triangles_;
-    std::vector<Vec3d> vertexNormals_, edgeNormals_, faceNormals_;   // edges: three a triangle
-    std::vector<Box> boxes_;
+    std::vector<int> shells_, bodies_;  // of a triangle, of a shell
+    std::vector<std::array<int64_t, 2>>
+        onGrid_;  // y and z of the vertices, on a grid so fine that products of two are exact
+    std::vector<Facet> surface_;  // parts of triangles
+    BoxTree triangleTree_, surfaceTree_;
     Vec3d low_, high_;
-    double area_ = 0;
+    double area_ = 0, precision_ = 0;
 };
 
-// Wavefront OBJ: the lines v and f, whose polygons become fans; all else is passed over. Remembers the files it has read until they
-// change. Throws Error (Scene), one line that begins with the path and says which line or edge is wrong.
+// OBJ, in double precision; STL, PLY and glTF. Remembers the files it has read until they change.
+// Throws Error (Scene), one line that begins with the path and says which line or edge is wrong.
 std::shared_ptr<const Mesh> readMesh(const std::string& path);
 
 }  // namespace spindrift

@@ -50,8 +50,9 @@ Lattice bodyLattice(const Scene& scene, const Body& body) {
             lattice.first[k] = 0.5 * scene.domain.size()[k];
             continue;
         }
-        const double beside = isCornered(body) ? double(body.min[k]) + 0.5 * dx
-                                               : double(body.center[k]) - 0.5 * dx * double(lattice.n[k] - 1);
+        const double beside =
+            isCornered(body) ? double(body.min[k]) + 0.5 * dx
+                             : convexOf(body, 3).middle[k] - 0.5 * dx * double(lattice.n[k] - 1);
         lattice.first[k] = beside - origin[k];
     }
     return lattice;
@@ -70,6 +71,10 @@ bool contains(const Body& body, const Lattice& lattice, Vec3d origin, Vec3d p) {
     if (body.shape == Shape::Wedge) {
         const Convex wedge = convexOf(body, 2);
         return wedge.nearest(p + origin - wedge.middle).distance <= 1e-6 * lattice.step.x;
+    }
+    if (body.shape == Shape::Mesh) {  // files round coordinates
+        const Convex mesh = convexOf(body, 3);
+        return mesh.nearest(p + origin - mesh.middle).distance <= 1e-4 * lattice.step.x;
     }
     Vec3d d = p - (toDouble(body.center) - origin);
     if (lattice.step.z == 0) d.z = 0;   // two dimensions

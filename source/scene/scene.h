@@ -32,9 +32,10 @@ enum class ProbeKind { Point, Line, Height, Front };
 enum class Order { Mean, Linear };
 enum class ObjectShape { Block, Sheet, Tube, Shell };
 
-// A block reads min and max, a wedge too: its ridge runs along z, above the middle of its base. A sphere reads center and
-// radius, a cylinder center, radius, height and axis. A file, of fluid only, has no shape but particles. Of solids only: a plane reads center, a point of
-// it, and normal; a mesh, triangles of a file, path, scale and offset.
+// A block reads min and max, a wedge too: its ridge runs along z, above the middle of its base. A
+// sphere reads center and radius, a cylinder center, radius, height and axis; a mesh, triangles of
+// a file, path, scale and offset. A file, of fluid only, has no shape but particles. A plane, of
+// solids only, reads center, a point of it, and normal.
 struct Form {
     Shape shape = Shape::Block;
     Vec3 min{0, 0, 0}, max{0.5f, 0.5f, 0.5f};   // m

@@ -60,18 +60,36 @@ constexpr auto enumNames(Order) { return std::array{"mean", "linear"}; }
 // Which knobs a shape has depends on which it is; that is visited first, so that a reader has set it before the others are chosen.
 template <class F, class Visitor>
 void visitForm(F& f, const std::string& at, Visitor&& visit) {
-    visit(at + ".shape", f.shape, Knob{"", 0, 0, "block, sphere, cylinder or wedge; of fluid also file: the particles of another run or program; of obstacles also plane: all that is behind it, and mesh: triangles of a file", Restart});
-    if (f.shape == Shape::File || f.shape == Shape::Mesh) return;
+    visit(
+        at + ".shape", f.shape,
+        Knob{
+            "", 0, 0,
+            "block, sphere, cylinder, wedge, or mesh: triangles of a file; of fluid also file: the "
+            "particles of another run or program; of obstacles also plane: all that is behind it",
+            Restart});
+    if (f.shape == Shape::Mesh) {
+        visit(at + ".path", f.path,
+              Knob{"", 0, 0,
+                   "closed surfaces of triangles or polygons, OBJ, STL, PLY or glTF; a relative "
+                   "path starts at the scene file",
+                   Restart});
+        visit(at + ".scale", f.scale, Knob{"", 1e-6f, 1e6f, "m per unit of the file", Restart});
+        visit(at + ".offset", f.offset,
+              Knob{"m", -1e7f, 1e7f, "where the file's origin is", Restart});
+        return;
+    }
+    if (f.shape == Shape::File) return;
     if (f.shape == Shape::Block || f.shape == Shape::Wedge) {
-        visit(at + ".min", f.min, Knob{"m", -1e4f, 1e4f, "lower corner", Restart});
-        visit(at + ".max", f.max, Knob{"m", -1e4f, 1e4f, "upper corner", Restart});
+        visit(at + ".min", f.min, Knob{"m", -1e7f, 1e7f, "lower corner", Restart});
+        visit(at + ".max", f.max, Knob{"m", -1e7f, 1e7f, "upper corner", Restart});
     } else {
-        visit(at + ".center", f.center, Knob{"m", -1e4f, 1e4f, "centre; of a plane any of its points", Restart});
+        visit(at + ".center", f.center,
+              Knob{"m", -1e7f, 1e7f, "centre; of a plane any of its points", Restart});
         if (f.shape == Shape::Plane) return;
-        visit(at + ".radius", f.radius, Knob{"m", 1e-6f, 1e4f, "radius", Restart});
+        visit(at + ".radius", f.radius, Knob{"m", 1e-9f, 1e7f, "radius", Restart});
     }
     if (f.shape == Shape::Cylinder) {
-        visit(at + ".height", f.height, Knob{"m", 1e-6f, 1e4f, "length along the axis", Restart});
+        visit(at + ".height", f.height, Knob{"m", 1e-9f, 1e7f, "length along the axis", Restart});
         visit(at + ".axis", f.axis, Knob{"", 0, 0, "direction of the axis", Restart});
     }
 }
@@ -110,19 +128,17 @@ requires std::is_same_v<std::remove_const_t<S>, Solid>
 void visitMember(S& s, const std::string& at, Visitor&& visit) {
     visitForm(s, at, visit);
     if (s.shape == Shape::Plane)
-        visit(at + ".normal", s.normal, Knob{"", -1e4f, 1e4f, "of a plane, to the side where fluid is; of any length", Restart});
-    if (s.shape == Shape::Mesh) {
-        visit(at + ".path", s.path, Knob{"", 0, 0, "OBJ file of a closed surface; a relative path starts at the scene file", Restart});
-        visit(at + ".scale", s.scale, Knob{"", 1e-6f, 1e6f, "m per unit of the file", Restart});
-        visit(at + ".offset", s.offset, Knob{"m", -1e4f, 1e4f, "where the file's origin is", Restart});
-    }
+        visit(at + ".normal", s.normal,
+              Knob{"", -1e4f, 1e4f, "of a plane, to the side where fluid is; of any length",
+                   Restart});
     visit(at + ".name", s.name, Knob{"", 0, 0, "of its columns in time series", Restart});
     visit(at + ".velocity", s.velocity, Knob{"m/s", -1e3f, 1e3f, "with which it goes on and on; of one that floats at the start", Restart});
     visit(at + ".spin", s.spin, Knob{"degrees/s", -1e5f, 1e5f, "turns about its middle", Restart});
     visit(at + ".spin_axis", s.spinAxis, Knob{"", 0, 0, "direction of the axis that it turns about", Restart});
     visit(at + ".keyframes", s.keyframes,
-          Knob{"", -1e4f, 1e4f,
-               "where it is when: [[t, x, y, z], ...] or [[t, x, y, z, turn], ...] in s, m and degrees, relative "
+          Knob{"", -1e7f, 1e7f,
+               "where it is when: [[t, x, y, z], ...] or [[t, x, y, z, turn], ...] in s, m and "
+               "degrees, relative "
                "to its place here; on straight lines between, at rest before and after",
                Restart});
     visit(at + ".motion", s.motion,
@@ -140,21 +156,31 @@ requires std::is_same_v<std::remove_const_t<O>, Object>
 void visitMember(O& o, const std::string& at, Visitor&& visit) {
     visit(at + ".shape", o.shape, Knob{"", 0, 0, "block, sheet (flat along the axis on which min and max are the same), tube, open at both ends, or shell: triangles of a file", Restart});
     if (o.shape == ObjectShape::Tube) {
-        visit(at + ".center", o.center, Knob{"m", -1e4f, 1e4f, "centre", Restart});
-        visit(at + ".radius", o.radius, Knob{"m", 1e-6f, 1e4f, "to the middle of the wall", Restart});
-        visit(at + ".height", o.height, Knob{"m", 1e-6f, 1e4f, "length along the axis", Restart});
+        visit(at + ".center", o.center, Knob{"m", -1e7f, 1e7f, "centre", Restart});
+        visit(at + ".radius", o.radius,
+              Knob{"m", 1e-9f, 1e7f, "to the middle of the wall", Restart});
+        visit(at + ".height", o.height, Knob{"m", 1e-9f, 1e7f, "length along the axis", Restart});
         visit(at + ".axis", o.axis, Knob{"", 0, 0, "direction of the axis", Restart});
     } else if (o.shape == ObjectShape::Shell) {
-        visit(at + ".path", o.path, Knob{"", 0, 0, "OBJ file of a closed surface; a relative path starts at the scene file", Restart});
+        visit(at + ".path", o.path,
+              Knob{"", 0, 0,
+                   "closed surfaces of triangles or polygons, OBJ, STL, PLY or glTF; a relative "
+                   "path starts at the scene file",
+                   Restart});
         visit(at + ".scale", o.scale, Knob{"", 1e-6f, 1e6f, "m per unit of the file", Restart});
-        visit(at + ".offset", o.offset, Knob{"m", -1e4f, 1e4f, "where the file's origin is", Restart});
+        visit(at + ".offset", o.offset,
+              Knob{"m", -1e7f, 1e7f, "where the file's origin is", Restart});
     } else {
-        visit(at + ".min", o.min, Knob{"m", -1e4f, 1e4f, "lower corner", Restart});
-        visit(at + ".max", o.max, Knob{"m", -1e4f, 1e4f, "upper corner", Restart});
+        visit(at + ".min", o.min, Knob{"m", -1e7f, 1e7f, "lower corner", Restart});
+        visit(at + ".max", o.max, Knob{"m", -1e7f, 1e7f, "upper corner", Restart});
     }
     if (o.shape != ObjectShape::Block)
-        visit(at + ".thickness", o.thickness, Knob{"m", 1e-6f, 1e3f, "of its wall: one layer of particles, more where it is thicker than a spacing", Restart});
-    visit(at + ".spacing", o.spacing, Knob{"m", 0, 10, "of its particles, 0 = simulation.spacing", Restart});
+        visit(at + ".thickness", o.thickness,
+              Knob{"m", 1e-9f, 1e7f,
+                   "of its wall: one layer of particles, more where it is thicker than a spacing",
+                   Restart});
+    visit(at + ".spacing", o.spacing,
+          Knob{"m", 0, 1e4f, "of its particles, 0 = simulation.spacing", Restart});
     visit(at + ".density", o.density, Knob{"kg/m^3", 1e-3f, 1e5f, "of what it is made of", Restart});
     visit(at + ".youngs_modulus", o.youngsModulus, Knob{"Pa", 0, 1e12f, "how stiff it is; Poisson's ratio is 1/4, of a single layer 1/3", Restart});
     visit(at + ".damping", o.damping, Knob{"", 0, 2, "of its bonds, share of the critical one", Restart});
@@ -164,17 +190,20 @@ void visitMember(O& o, const std::string& at, Visitor&& visit) {
 template <class G, class Visitor>
 requires std::is_same_v<std::remove_const_t<G>, Grip>
 void visitMember(G& g, const std::string& at, Visitor&& visit) {
-    visit(at + ".min", g.min, Knob{"m", -1e4f, 1e4f, "lower corner", Restart});
-    visit(at + ".max", g.max, Knob{"m", -1e4f, 1e4f, "upper corner", Restart});
+    visit(at + ".min", g.min, Knob{"m", -1e7f, 1e7f, "lower corner", Restart});
+    visit(at + ".max", g.max, Knob{"m", -1e7f, 1e7f, "upper corner", Restart});
     visit(at + ".velocity", g.velocity, Knob{"m/s", -1e3f, 1e3f, "with which it goes on and on", Restart});
-    visit(at + ".keyframes", g.keyframes, Knob{"", -1e4f, 1e4f, "where it is when, relative to its place here: [[t, x, y, z], ...] in s and m", Restart});
+    visit(at + ".keyframes", g.keyframes,
+          Knob{"", -1e7f, 1e7f,
+               "where it is when, relative to its place here: [[t, x, y, z], ...] in s and m",
+               Restart});
 }
 template <class C, class Visitor>
 requires std::is_same_v<std::remove_const_t<C>, Cut>
 void visitMember(C& c, const std::string& at, Visitor&& visit) {
     visit(at + ".time", c.time, Knob{"s", 0, 1e6f, "when it cuts", Restart});
-    visit(at + ".min", c.min, Knob{"m", -1e4f, 1e4f, "lower corner", Restart});
-    visit(at + ".max", c.max, Knob{"m", -1e4f, 1e4f, "upper corner", Restart});
+    visit(at + ".min", c.min, Knob{"m", -1e7f, 1e7f, "lower corner", Restart});
+    visit(at + ".max", c.max, Knob{"m", -1e7f, 1e7f, "upper corner", Restart});
 }
 
 template <class P, class Visitor>
@@ -189,13 +218,17 @@ void visitMember(P& p, const std::string& at, Visitor&& visit) {
     visit(at + ".name", p.name,
           Knob{"", 0, 0, "begins the names of its columns: letters, digits, _ and -", Restart});
     if (p.kind == ProbeKind::Point || p.kind == ProbeKind::Height)
-        visit(at + ".position", p.position, Knob{"m", -1e4f, 1e4f, "where it is; of a height across its axis", Restart});
+        visit(at + ".position", p.position,
+              Knob{"m", -1e7f, 1e7f, "where it is; of a height across its axis", Restart});
     if (p.kind == ProbeKind::Point)
         visit(at + ".radius", p.radius,
-              Knob{"m", 0, 1e4f, "of a sensor that sees a mean: of a disc on a face of the domain, elsewhere of a ball", Restart});
+              Knob{"m", 0, 1e7f,
+                   "of a sensor that sees a mean: of a disc on a face of the domain, elsewhere of "
+                   "a ball",
+                   Restart});
     if (p.kind == ProbeKind::Line) {
-        visit(at + ".from", p.from, Knob{"m", -1e4f, 1e4f, "first point", Restart});
-        visit(at + ".to", p.to, Knob{"m", -1e4f, 1e4f, "last point", Restart});
+        visit(at + ".from", p.from, Knob{"m", -1e7f, 1e7f, "first point", Restart});
+        visit(at + ".to", p.to, Knob{"m", -1e7f, 1e7f, "last point", Restart});
         visit(at + ".count", p.count, Knob{"", 2, 10000, "points, evenly spaced", Restart});
     }
     if (!interpolates) visit(at + ".axis", p.axis, Knob{"", 0, 0, "direction in which it reads", Restart});
@@ -295,7 +328,7 @@ void visitPhysics(S& s, Visitor&& visit) {
           Knob{"", 2, 3, "2 = a layer of particles, everything depends on x and y only", Restart});
     visit("simulation.kernel", sim.kernel, Knob{"", 0, 0, "smoothing kernel; mueller: poly6 for densities, the spiky one for gradients, one of its own for viscosity", Restart});
     visit("simulation.spacing", sim.spacing,
-          Knob{"m", 1e-5f, 10, "initial distance of particles", Restart});
+          Knob{"m", 1e-7f, 1e4f, "initial distance of particles", Restart});
     visit("simulation.support", sim.support, Knob{"", 1, 6, "support radius / spacing", Restart});
     visit("simulation.pressure_form", sim.pressureForm,
           Knob{"", 0, 0, "of wcsph: squares: p_i / rho_i^2 + p_j / rho_j^2; mean: (p_i + p_j) / (2 rho_i rho_j)"});
@@ -317,8 +350,8 @@ void visitPhysics(S& s, Visitor&& visit) {
     visit("simulation.acceleration_limit", sim.accelerationLimit,
           Knob{"m/s^2", 0, 1e6f, "caps the pressure acceleration, 0 = off"});
 
-    visit("domain.min", s.domain.min, Knob{"m", -1e4f, 1e4f, "lower corner of the box", Restart});
-    visit("domain.max", s.domain.max, Knob{"m", -1e4f, 1e4f, "upper corner of the box", Restart});
+    visit("domain.min", s.domain.min, Knob{"m", -1e7f, 1e7f, "lower corner of the box", Restart});
+    visit("domain.max", s.domain.max, Knob{"m", -1e7f, 1e7f, "upper corner of the box", Restart});
     visit("domain.periodic_x", s.domain.periodicX,
           Knob{"", 0, 0, "who leaves along x enters on the other side", Restart});
     visit("domain.periodic_y", s.domain.periodicY, Knob{"", 0, 0, "the same along y", Restart});
@@ -344,9 +377,10 @@ void visitPhysics(S& s, Visitor&& visit) {
                "nearly; predictor_corrector: second order, evaluates everything twice a step; split: first order, viscosity and "
                "external forces first, then the pressure that follows from them, for delta_sph",
                Restart});
-    visit("time.step", s.time.step, Knob{"s", 1e-8f, 1, "time step when fixed"});
+    visit("time.step", s.time.step, Knob{"s", 1e-12f, 100, "time step when fixed"});
     visit("time.cfl", s.time.cfl, Knob{"", 0.01f, 1, "Courant number: share of the stable step"});
-    visit("time.max_step", s.time.maxStep, Knob{"s", 1e-8f, 1, "longest step that cfl and local take"});
+    visit("time.max_step", s.time.maxStep,
+          Knob{"s", 1e-12f, 100, "longest step that cfl and local take"});
     visit("time.rest_speed", s.time.restSpeed,
           Knob{"", 0, 0.1f, "local: slower than this share of the speed of sound, fluid may fall asleep; 0 = never"});
     visit("time.retries", s.time.retries,
@@ -359,7 +393,7 @@ void visitFluid(S& s, Visitor&& visit) {
     visit("fluid.rest_density", f.restDensity,
           Knob{"kg/m^3", 1e-3f, 1e5f, "density at rest", Restart});
     visit("fluid.particle_mass", f.particleMass,
-          Knob{"kg", 0, 1e6f, "mass of a particle, 0 = rest density x spacing^3", Restart});
+          Knob{"kg", 0, 1e18f, "mass of a particle, 0 = rest density x spacing^3", Restart});
     visit("fluid.sound_speed", f.soundSpeed,
           Knob{"m/s", 0, 1e4f, "speed of sound, 0 = speed_ratio x the expected speed"});
     visit("fluid.speed_ratio", f.speedRatio,
@@ -426,13 +460,13 @@ void visitPicture(S& s, Visitor&& visit) {
     visit("view.camera.yaw", c.yaw, Knob{"degrees", -360, 360, "turn about the vertical"});
     visit("view.camera.pitch", c.pitch, Knob{"degrees", -90, 90, "height of the view"});
     visit("view.camera.distance", c.distance,
-          Knob{"m", 0, 1e5f, "distance to the target, 0 = fits the box"});
+          Knob{"m", 0, 1e8f, "distance to the target, 0 = fits the box"});
     visit("view.camera.field_of_view", c.fieldOfView,
           Knob{"degrees", 5, 120, "vertical angle of view"});
     visit("view.camera.automatic_target", c.automaticTarget,
           Knob{"", 0, 0, "looks at the box's centre"});
     visit("view.camera.target", c.target,
-          Knob{"m", -1e4f, 1e4f, "point looked at when not automatic"});
+          Knob{"m", -1e7f, 1e7f, "point looked at when not automatic"});
 }
 
 template <class S, class Visitor>

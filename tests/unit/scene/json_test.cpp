@@ -75,13 +75,14 @@ TEST(ReadScene, NamesPlaceAndRemedyOfEachMistake) {
         {R"({"version": 2, "fluid": {"viscosity": 1e999}})",
          "not valid JSON: number overflow parsing '1e999'"},
         {R"({"version": 2, "simulation": {"spacing": 0}})",
-         "simulation.spacing: 0 is out of range, allowed: 1e-05 to 10 m"},
+         "simulation.spacing: 0 is out of range, allowed: 1e-07 to 10000 m"},
         {R"({"version": 2, "simulation": {"gravity": -9.8}})",
          "simulation.gravity: expected three numbers [x, y, z] in m/s^2, found -9.8"},
         {R"({"version": 2, "simulation": {"gravity": [0, -981, 0]}})",
          "[0,-981,0] is out of range"},
         {R"({"version": 2, "simulation": {"kernel": "wendland"}})",
-         "expected one of wendland_c2, cubic_spline, wendland_c4, wendland_c6, quintic_spline, mueller, found \"wendland\"; did you mean "
+         "expected one of wendland_c2, cubic_spline, wendland_c4, wendland_c6, quintic_spline, "
+         "mueller, found \"wendland\"; did you mean "
          "\"wendland_c2\"?"},
         {R"({"version": 2, "compute": {"threads": 1.5}})",
          "compute.threads: expected a whole number, found 1.5"},
@@ -99,9 +100,11 @@ TEST(ReadScene, NamesPlaceAndRemedyOfEachMistake) {
         {R"({"version": 2, "fluid": {"bodies": [3]}})",
          "fluid.bodies[0]: expected an object {...}, found 3"},
         {R"({"version": 2, "fluid": {"bodies": [{"radius": 1}]}})",
-         "fluid.bodies[0].radius: unknown key; known here: field, max, min, name, pressure, rest_density, shape, velocity, viscosity"},
+         "fluid.bodies[0].radius: unknown key; known here: field, max, min, name, pressure, "
+         "rest_density, shape, velocity, viscosity"},
         {R"({"version": 2, "output": {"probes": [{"kind": "heigth"}]}})",
-         "output.probes[0].kind: expected one of point, line, height, front, found \"heigth\"; did you mean \"height\"?"},
+         "output.probes[0].kind: expected one of point, line, height, front, found \"heigth\"; did "
+         "you mean \"height\"?"},
         {R"({"version": 2, "output": {"probes": [{"kind": "front", "radius": 1}]}})",
          "output.probes[0].radius: unknown key; known here: axis, kind, name"},
         {R"({"version": 2, "fluid": {"bodies": [{}, {"shape": "cube"}]}})",

@@ -88,28 +88,34 @@ TEST(Meshes, AreReadAnewWhenTheFileChanges) {
 
 TEST(Meshes, MistakesAreNamed) {
     const std::string box = boxSurface({0, 0, 0}, {1, 1, 1}).text();
-    Surface open = boxSurface({0, 0, 0}, {1, 1, 1}), turned = open, doubled = open;
+    Surface open = boxSurface({0, 0, 0}, {1, 1, 1}), membrane = open;
     open.faces.pop_back();
-    std::reverse(turned.faces[2].begin(), turned.faces[2].end());
-    doubled.faces.push_back(doubled.faces[0]);
+    membrane.faces.push_back({0, 1, 7, 6});
+    // The projective plane in six corners: closed, and nothing can be behind it.
+    Surface moebius;
+    moebius.vertices = {{0, 0, 1},        {1, 0, 0},          {0.3, 1, 0.1},
+                        {-0.8, 0.6, 0.3}, {-0.8, -0.6, -0.2}, {0.3, -1, 0.4}};
+    moebius.faces = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}, {0, 5, 1},
+                     {1, 2, 4}, {2, 3, 5}, {3, 4, 1}, {4, 5, 2}, {5, 1, 3}};
     EXPECT_EQ(complaint(box), "");
     const std::pair<std::string, const char*> mistakes[] = {
         {"v 0 0\n", "line 1: z = \"\" is no number"},
         {"v 0 0 1e999\n", "line 1: z = \"1e999\" is no number"},
         {"v 0 nan 1\n", "line 1: y = \"nan\" is no number"},
-        {"\nv 2e6 0 1\n", "line 2: x = 2e+06 is farther than 1e+06 from 0"},
+        {"\nv 2e9 0 1\n", "line 2: x = 2e+09 is farther than 1e+09 from 0"},
         {"v 0 0 0\nf 1 1 2\n", "line 2: vertex 2 of 1"},
         {"v 0 0 0\nf 1 1 -2\n", "line 2: vertex -2 of 1"},
         {"v 0 0 0\nf 0 1 1\n", "line 2: \"0\" is no corner"},
         {"v 0 0 0\nf 1 1 a/1\n", "line 2: \"a/1\" is no corner"},
         {"v 0 0 0\nf 1 1\n", "a face of 2 corners"},
         {"v 0 0 0\n", "has no faces"},
-        {"v 0 0 0\nf 1 1 1\n", "has no faces"},
-        {"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 3 2 1\n", "encloses no volume"},
-        {open.text(), "is not closed: the edge from (0, 0, 1) to (1, 0, 1) belongs to one triangle"},
+        {"v 0 0 0\nf 1 1 1\n", "encloses no volume"},
+        {"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 3 2 1\n", "belongs to one triangle"},
+        {open.text(),
+         "is not closed: the edge from (0, 0, 1) to (1, 0, 1) belongs to one triangle"},
         {open.text(), "4 such edges"},
-        {turned.text(), "belongs to two triangles that face opposite sides"},
-        {doubled.text(), "belongs to 3 triangles"},
+        {membrane.text(), "belongs to 3 triangles"},
+        {moebius.text(), "has one side only"},
     };
     for (const auto& [text, words] : mistakes) EXPECT_NE(complaint(text).find(words), std::string::npos) << complaint(text);
     EXPECT_THROW(readMesh("/nowhere/a.obj"), Error);
@@ -329,9 +335,26 @@ TEST(Meshes, ScenesNameTheirMistakes) {
     EXPECT_NE(refusal(R"({"shape": "mesh"})").find("solids[0].path: \"\": no file is named"), std::string::npos) << refusal(R"({"shape": "mesh"})");
     EXPECT_NE(refusal(R"({"shape": "mesh", "path": "none.obj"})").find("solids[0].path: none.obj: can't be read"), std::string::npos);
     EXPECT_NE(refusal(mesh + "}", "simulation.dimensions=2").find("solids[0].shape: a mesh has three dimensions"), std::string::npos);
-    EXPECT_NE(refusal(mesh + R"(, "scale": 1e6})").find("solids[0].scale"), std::string::npos);
-    EXPECT_NE(refusal(mesh + R"(, "offset": [5, 0, 0]})").find("outside the domain"), std::string::npos);
-    EXPECT_NE(refusal(mesh + "}", R"(fluid.bodies=[{"shape": "mesh"}])").find("fluid.bodies[0].shape: a mesh is for solids"), std::string::npos);
+    EXPECT_NE(refusal(mesh + R"(, "scale": 1e6})")
+                  .find("solids[0].scale: the mesh is 4e+05 m large, the domain 1.6 m; lower it"),
+              std::string::npos);
+    EXPECT_NE(
+        refusal(mesh + R"(, "scale": 1000})").find("if the file is in millimetres, set it to 1"),
+        std::string::npos);
+    EXPECT_NE(refusal(mesh + R"(, "offset": [5, 0, 0]})")
+                  .find("solids[0].offset: the mesh lies from (5.2, 0.2, 0.2) to (5.6, 0.5, 0.6) "
+                        "m, outside the domain; the "
+                        "offset [0.4, 0.1, -0."),
+              std::string::npos);
+    EXPECT_NE(refusal(mesh + R"(, "offset": [500000, 0, 0]})")
+                  .find("solids[0].offset: is so large that it is rounded to 0.06 m"),
+              std::string::npos);
+    EXPECT_NE(refusal(mesh + "}", R"(fluid.bodies=[{"shape": "mesh", "path": "none.obj"}])")
+                  .find("fluid.bodies[0].path: none.obj: can't be read"),
+              std::string::npos);
+    EXPECT_NE(
+        refusal(mesh + "}", "domain.max=[500000, 1, 1]").find("where numbers are 0.06 m apart"),
+        std::string::npos);
     // A scene's mesh is beside it, and the saved scene knows where that was.
     std::ofstream(testing::TempDir() + "/scene.json") << R"({"version": 2, "solids": [{"shape": "mesh", "path": "solid.obj"}]})";
     const Scene scene = loadScene(testing::TempDir() + "/scene.json");
