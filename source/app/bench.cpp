@@ -4,7 +4,7 @@
 #include "app/frame_bench.h"
 #include "app/scene_choice.h"
 #include "core/error.h"
-#include "measure/output_file.h"
+#include "core/output_file.h"
 #include "sim/simulation.h"
 
 #include <fmt/format.h>

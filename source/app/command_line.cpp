@@ -12,7 +12,7 @@
 #include "app/stress.h"
 #include "app/validate.h"
 #include "core/error.h"
-#include "measure/output_file.h"
+#include "core/output_file.h"
 #include "scene/json.h"
 #ifdef SPINDRIFT_WINDOW
 #include "app/window/window.h"
@@ -34,8 +34,8 @@ struct Shortcut {
     const char *option, *path, *placeholder, *help;
 };
 constexpr Shortcut Shortcuts[] = {
-    {"--steps", "compute.steps", "N", "time steps to run"},
-    {"--time", "output.time", "SECONDS", "simulated time to run"},
+    {"--steps", "compute.steps", "N", "time steps to run, from the beginning of the run on"},
+    {"--time", "output.time", "SECONDS", "simulated time to run, from the beginning of the run on"},
     {"--screenshot", "output.screenshot", "FILE", "saves the last state as PNG"},
     {"--color", "view.color_by", "QUANTITY", "what colours the particles"},
     {"--frames", "output.frames", "FOLDER", "saves a PNG for each frame"},

@@ -1,7 +1,7 @@
 #include "app/compare.h"
 
 #include "core/error.h"
-#include "measure/output_file.h"
+#include "core/output_file.h"
 #include "render/image_compare.h"
 
 #include <fmt/format.h>
@@ -9,7 +9,7 @@
 namespace spindrift {
 
 int compare(const CompareOptions& options) {
-    if (!options.diff.empty()) requireWritable(options.diff);
+    if (!options.diff.empty()) requireFormat(options.diff, {"png"}), requireWritable(options.diff);
     const Image a = readPng(options.a), b = readPng(options.b);
     if (a.width != b.width || a.height != b.height) {
         fmt::print("sizes differ: {} x {} and {} x {}\n", a.width, a.height, b.width, b.height);

@@ -3,18 +3,20 @@
 #include "app/explain.h"
 #include "app/frame.h"
 #include "app/progress.h"
+#include "app/recorder.h"
 #include "core/error.h"
+#include "core/output_file.h"
 #include "measure/checkpoint.h"
 #include "measure/health.h"
-#include "measure/output_file.h"
 #include "measure/probes.h"
-#include "measure/time_series.h"
+#include "measure/save_particles.h"
+#include "measure/series_files.h"
 #include "render/egl_context.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <optional>
@@ -30,7 +32,7 @@ constexpr int HealthInterval = 20;
 // The signal that asked for an end, 0 = none.
 volatile std::sig_atomic_t stopSignal = 0;
 
-// While it lives SIGINT and SIGTERM are noted; a second one kills as usual.
+// While it lives SIGINT and SIGTERM are noted; a second one kills as usual. SIGPIPE is none.
 struct StopSignals {
     StopSignals() {
         stopSignal = 0;
@@ -39,30 +41,48 @@ struct StopSignals {
         action.sa_flags = int(SA_RESETHAND);
         sigaction(SIGINT, &action, &before_[0]);
         sigaction(SIGTERM, &action, &before_[1]);
+        // A reader that is gone is an error to be told, not the end without the other outputs.
+        action.sa_handler = SIG_IGN;
+        sigaction(SIGPIPE, &action, &before_[2]);
     }
     ~StopSignals() {
         sigaction(SIGINT, &before_[0], nullptr);
         sigaction(SIGTERM, &before_[1], nullptr);
+        sigaction(SIGPIPE, &before_[2], nullptr);
     }
 
 private:
-    struct sigaction before_[2];
+    struct sigaction before_[3];
 };
 
+struct OutputFormat {
+    std::string Output::*file;
+    std::vector<std::string> extensions;
+};
+const std::vector<OutputFormat>& outputFormats() {
+    static const std::vector<OutputFormat> all = {
+        {&Output::screenshot, {"png"}}, {&Output::csv, {"csv"}}, {&Output::json, {"json"}}, {&Output::hdf5, {"h5", "hdf5", "hdf"}},
+        {&Output::particles, {"csv", "h5"}}, {&Output::checkpoint, {"h5", "hdf5", "hdf"}}};
+    return all;
+}
+
 // Every output is tried before the first step: an hour of computing must not end at a missing
-// folder.
-void requireOutputs(const Output& output) {
-    if (output.csv == "-" && output.json == "-")
-        throw Error(
-            Exit::Output,
-            "output.csv and output.json both want standard output; give one of them a file");
-    std::set<std::string> files;
-    for (const std::string& file : {output.screenshot, output.csv, output.json, output.hdf5, output.particles, output.checkpoint}) {
-        if (file.empty() || file == "-") continue;
+// folder. The file that the run is read from is no place for them, but a checkpoint that is named again.
+void requireOutputs(const Output& output, const Start& start) {
+    const std::string source = whereItLeads(start.file);
+    std::set<std::string> places;
+    for (const OutputFormat& format : outputFormats()) {
+        const std::string& file = output.*format.file;
+        if (file.empty()) continue;
+        requireFormat(file, format.extensions);
         requireWritable(file);
-        if (!files.insert(file).second)
-            throw Error(Exit::Output,
-                        file + ": two outputs want this file; give each a file of its own");
+        const std::string place = whereItLeads(file);
+        if (place.empty()) continue;
+        if (place == source && !(start.state && format.file == &Output::checkpoint))
+            throw Error(Exit::Output, file + ": can't be written: the run is read from it; name another file");
+        if (!places.insert(place).second)
+            throw Error(Exit::Output, isStandardOutput(file) ? "two outputs both want standard output; give one of them a file"
+                                                             : file + ": two outputs want this file; give each a file of its own");
     }
     if (!output.frames.empty()) requireFolder(output.frames);
 }
@@ -86,37 +106,39 @@ double asWritten(float value) { return std::stod(fmt::format("{}", value)); }
 class HeadlessRun {
 public:
     HeadlessRun(const Start& start, bool quiet)
-        : scene_(start.scene), quiet_(quiet), progress_(!quiet), probes_(start.scene), series_(probes_.columns()) {
-        if (scene_.compute.steps == 0 && scene_.output.time == 0)
-            scene_.compute.steps = DefaultSteps;
-        requireOutputs(scene_.output);
+        : scene_(start.scene), view_(start.view), window_(start.window), quiet_(quiet), progress_(!quiet), probes_(start.scene) {
+        requireOutputs(scene_.output, start);
         const Output& output = scene_.output;
         if (!output.screenshot.empty() || !output.frames.empty()) {
             pictures_.emplace(scene_);
             scene_ = onDrawingDevice(std::move(scene_));
         }
-        rows_ = !output.csv.empty() || !output.json.empty() || !output.hdf5.empty();
-        sampling_ = rows_ || !output.frames.empty();
         simulation_ = startSimulation(scene_, start.state);
+        series_.emplace(output, probes_.columns(), simulation_->plan(), start.state ? &start.state->clock : nullptr);
         guard_.emplace(*simulation_, scene_);
+        now_ = simulation_->measure();
+        first_ = steps_ = now_.steps, evaluationsBefore_ = now_.evaluations;
+        endStep_ = scene_.compute.steps == 0 && output.time == 0 ? first_ + DefaultSteps : scene_.compute.steps;
+        addRecorders();
+        if (!quiet && !start.said.empty()) fmt::print(stderr, "spindrift: {}\n", start.said);
     }
 
     int run() {
         try {
-            now_ = simulation_->measure();
-            first_ = now_.steps, evaluationsBefore_ = now_.evaluations;
-            if (checkpointsByTime()) nextCheckpoint_ = after(now_.time, asWritten(scene_.output.checkpointEvery));
-            sample();
+            record();
             while (!done() && trouble_.empty() && stopSignal == 0) advance();
+            progress_.clear();
+            finish();
         } catch (...) {   // a GPU was lost, a disk is full: what was measured until then is kept
             progress_.clear();
-            writeSeries();
+            try {
+                series_->finish();
+                keepLastGood();
+            } catch (const Error&) {}   // the first trouble is the one to tell
             throw;
         }
-        progress_.clear();
-        finish();
         if (trouble_.empty() && stopSignal != 0) {
-            fmt::print(stderr, "spindrift: stopped by a signal after {} steps\n", steps_);
+            fmt::print(stderr, "spindrift: stopped by a signal after {} steps\n", steps_ - first_);
             return 128 + stopSignal;
         }
         if (trouble_.empty()) return int(Exit::Ok);
@@ -126,29 +148,30 @@ public:
 
 private:
     bool done() const {
-        const int steps = scene_.compute.steps;
         const double time = asWritten(scene_.output.time);
-        return (steps > 0 && steps_ >= steps) || (time > 0 && reached(time));
+        constexpr double NoStep = 1e-3;   // share of the last one: too short to be worth one, after a start near the end
+        return (endStep_ > 0 && steps_ >= endStep_) || (time > 0 && (isReached(time, now_.time) || time - now_.time < NoStep * now_.dt));
     }
 
-    // One step; then what is due: a look at the run's health, a sample, the progress bar.
+    // One step; then what is due: a look at the run's health, what is to be recorded, the progress bar.
     void advance() {
         const double stop = nextStop();
         simulation_->stopAt(stop);
         const auto start = std::chrono::steady_clock::now();
         simulation_->step();
         ++steps_, ++made_;
-        const bool look = steps_ % HealthInterval == 0 || steps_ == scene_.compute.steps ||
+        const bool look = steps_ % HealthInterval == 0 || steps_ == endStep_ ||
                           (stop < never && isReached(stop, simulation_->clock().time));
         if (look) simulation_->wait();
         stepSeconds_ +=
             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        if (!look) return;
-        now_ = simulation_->measure();
-        lookAfterIt();
-        if (sampling_ && trouble_.empty()) sample();
-        if (checkpointsByTime() && trouble_.empty() && reached(nextCheckpoint_)) saveCheckpoint();
-        if (progress_.due()) progress_.show(share(), describe());
+        if (look) {
+            now_ = simulation_->measure();
+            lookAfterIt();
+            if (trouble_.empty()) record();
+            if (progress_.due()) progress_.show(share(), describe());
+        }
+        series_->keepUp();
     }
 
     // Trouble that shorter steps can't help ends the run; what was written since the state that it goes back to is forgotten.
@@ -161,19 +184,13 @@ private:
             fmt::print(stderr, "spindrift: {}\n", guard_->said());
         }
         if (found != HealthGuard::Finding::WentBack) return;
-        steps_ = now_.steps - first_;
-        series_.dropAfter(now_.time);
-        while (!frameTimes_.empty() && frameTimes_.back() > now_.time) frameTimes_.pop_back();
-        lastRow_ = std::min(lastRow_, steps_);
-        nextRow_ = std::min(nextRow_, after(now_.time, rowInterval()));
-        nextFrame_ = std::min(nextFrame_, after(now_.time, frameInterval()));
-        if (checkpointsByTime()) nextCheckpoint_ = after(now_.time, asWritten(scene_.output.checkpointEvery));
+        steps_ = now_.steps;
+        for (Recorder& recorder : recorders_) recorder.goBack(now_.time);
     }
 
     double share() const {
-        const int steps = scene_.compute.steps;
         const double byTime = scene_.output.time > 0 ? now_.time / scene_.output.time : 0;
-        return std::max(byTime, steps > 0 ? double(steps_) / steps : 0);
+        return std::max(byTime, endStep_ > 0 ? double(steps_) / double(endStep_) : 0);
     }
 
     std::string describe() const {
@@ -181,72 +198,85 @@ private:
                            1000 * stepSeconds_ / double(made_));
     }
 
-    // A row of the series and a frame of the sequence, if they are due.
-    void sample() {
+    void record() {
+        for (Recorder& recorder : recorders_) recorder.writeIfDue(now_.time);
+    }
+    bool hasRows() const {
         const Output& output = scene_.output;
-        if (rows_ && reached(nextRow_)) {
-            addRow();
-            nextRow_ = after(now_.time, rowInterval());
+        return !output.csv.empty() || !output.json.empty() || !output.hdf5.empty();
+    }
+    // A row, a frame and a checkpoint of the same moment are written in this order. A run that goes on writes first what comes after
+    // the last that is there.
+    void addRecorders() {
+        const Output& output = scene_.output;
+        const double frame = 1 / double(output.fps), row = output.sampleEvery > 0 ? asWritten(output.sampleEvery) : frame;
+        const auto after = [](double last, double every) { return last < 0 ? 0 : multipleAfter(last, every); };
+        if (hasRows())
+            recorders_.push_back({row, after(series_->lastTime(), row), [this] { addRow(); }, [this](double time) { series_->dropAfter(time); }});
+        if (!output.frames.empty()) {
+            if (first_ > 0) countFramesBefore(frame);
+            recorders_.push_back({frame, after(frameTimes_.empty() ? -1 : frameTimes_.back(), frame), [this] { saveFrame(); },
+                                  [this](double time) { std::erase_if(frameTimes_, [&](double drawn) { return drawn > time; }); }});
         }
-        if (!output.frames.empty() && reached(nextFrame_)) {
-            const auto file = std::filesystem::path(output.frames) / fmt::format("frame_{:05}.png", frameTimes_.size());
-            pictures_->save(*simulation_, scene_, file.string());
-            frameTimes_.push_back(now_.time);
-            nextFrame_ = after(now_.time, frameInterval());
-        }
+        const double checkpoint = asWritten(output.checkpointEvery);
+        if (!output.checkpoint.empty() && checkpoint > 0)
+            recorders_.push_back({checkpoint, after(now_.time, checkpoint), [this] { saveCheckpoint(); }, [](double) {}});
+    }
+
+    std::string frameFile(size_t number) const {
+        return (std::filesystem::path(scene_.output.frames) / fmt::format("frame_{:05}.png", number)).string();
+    }
+    void saveFrame() {
+        pictures_->save(*simulation_, scene_, frameFile(frameTimes_.size()));
+        frameTimes_.push_back(now_.time);
+        ++framesMade_;
+    }
+    // Those of the run that goes on, as far as they are there.
+    void countFramesBefore(double every) {
+        while (isReached(double(frameTimes_.size()) * every, now_.time) && std::filesystem::exists(frameFile(frameTimes_.size())))
+            frameTimes_.push_back(double(frameTimes_.size()) * every);
     }
 
     static constexpr double never = 1e300;
     // The next time at which the run is looked at or ends.
     double nextStop() const {
-        const Output& output = scene_.output;
-        double stop = output.time > 0 ? asWritten(output.time) : never;
-        if (rows_) stop = std::min(stop, nextRow_);
-        if (!output.frames.empty()) stop = std::min(stop, nextFrame_);
-        return checkpointsByTime() ? std::min(stop, nextCheckpoint_) : stop;
+        double stop = scene_.output.time > 0 ? asWritten(scene_.output.time) : never;
+        for (const Recorder& recorder : recorders_) stop = std::min(stop, recorder.next);
+        return stop;
     }
-    // Two times that should be the same, but are sums of different steps, are.
-    static bool isReached(double time, double now) { return now >= time * (1 - 1e-9); }
-    bool reached(double time) const { return isReached(time, now_.time); }
-    double frameInterval() const { return 1 / double(scene_.output.fps); }
-    double rowInterval() const { return scene_.output.sampleEvery > 0 ? asWritten(scene_.output.sampleEvery) : frameInterval(); }
-    // Of the multiples of `every` the first one that is still ahead.
-    static double after(double time, double every) { return (std::floor(time / every * (1 + 1e-9)) + 1) * every; }
 
-    bool checkpointsByTime() const { return !scene_.output.checkpoint.empty() && scene_.output.checkpointEvery > 0; }
+    void writeCheckpointOf(const RunState& state) {
+        Scene scene = scene_;
+        scene.view = view_, scene.window = window_;
+        writeCheckpoint(scene.output.checkpoint, scene, state);
+        written_ = state.clock.time;
+    }
+    void keepLastGood() {
+        if (!scene_.output.checkpoint.empty() && guard_->lastGood().clock.time > written_) writeCheckpointOf(guard_->lastGood());
+    }
     // The run goes on from what the file holds, so that whoever restarts from it gets the same bits.
     void saveCheckpoint() {
         RunState state = simulation_->state();
-        writeCheckpoint(scene_.output.checkpoint, scene_, state);
-        written_ = state.clock.time;
+        writeCheckpointOf(state);
         simulation_->restart(state);
         guard_->keep(std::move(state));
-        nextCheckpoint_ = after(now_.time, asWritten(scene_.output.checkpointEvery));
     }
 
     void addRow() {
-        series_.add(now_, simulation_->times(), probes_.any() ? probes_.read(simulation_->particles()) : std::vector<double>());
+        series_->add(now_, simulation_->times(), probes_.any() ? probes_.read(simulation_->particles()) : std::vector<double>());
         simulation_->resetTimes();
-        lastRow_ = steps_;
-    }
-
-    void writeSeries() const {
-        const Output& output = scene_.output;
-        if (!output.csv.empty()) writeText(output.csv, series_.csv());
-        if (!output.json.empty()) writeText(output.json, series_.json());
-        if (!output.hdf5.empty()) series_.writeHdf5(output.hdf5);
     }
 
     void finish() {
         const Output& output = scene_.output;
         now_ = simulation_->measure();
         if (trouble_.empty()) trouble_ = divergence(scene_, now_);
-        if (rows_ && lastRow_ < steps_) addRow();
-        writeSeries();
+        if (hasRows() && series_->lastTime() < now_.time) addRow();
+        series_->finish();
         if (!output.checkpoint.empty() && trouble_.empty())
-            writeCheckpoint(output.checkpoint, scene_, simulation_->state());
-        else if (!output.checkpoint.empty() && guard_->lastGood().clock.time > written_)
-            writeCheckpoint(output.checkpoint, scene_, guard_->lastGood());
+            writeCheckpointOf(simulation_->state());
+        else
+            keepLastGood();
         if (!output.particles.empty() && trouble_.empty()) saveParticles(output.particles, simulation_->particles());
         if (!output.screenshot.empty()) pictures_->save(*simulation_, scene_, output.screenshot);
         if (!quiet_) summarise();
@@ -254,15 +284,17 @@ private:
 
     void summarise() const {
         const Output& output = scene_.output;
-        // Standard output may already belong to the series.
-        std::FILE* out = output.csv == "-" || output.json == "-" ? stderr : stdout;
+        // Standard output may already belong to an output.
+        const auto& formats = outputFormats();
+        const bool taken = std::any_of(formats.begin(), formats.end(), [&](const auto& f) { return isStandardOutput(output.*f.file); });
+        std::FILE* out = taken ? stderr : stdout;
         const double ms = made_ > 0 ? 1000 * stepSeconds_ / double(made_) : 0;
         fmt::print(out, "scene          {}\n", scene_.name);
         fmt::print(out, "device         {}\n", simulation_->deviceName());
         if (pictures_ && pictures_->frame.copiesVertices())
             fmt::print(out, "vertices       copied through the host, because {} draws\n", glName());
         fmt::print(out, "particles      {}\n", particlesOf(*simulation_));
-        fmt::print(out, "steps          {}, {:.3g} ms each\n", steps_, ms);
+        fmt::print(out, "steps          {}, {:.3g} ms each\n", steps_ - first_, ms);
         if (scene_.time.mode == TimeMode::Local && made_ > 0)
             fmt::print(out, "local steps    {:.3g} evaluations of a particle a step\n",
                        (now_.evaluations - evaluationsBefore_) / double(simulation_->fluidCount()) / double(made_));
@@ -278,24 +310,28 @@ private:
         if (!output.screenshot.empty())
             fmt::print(out, "picture        {}\n",
                        std::filesystem::absolute(output.screenshot).lexically_normal().string());
-        if (!frameTimes_.empty()) fmt::print(out, "frames         {} in {}\n", frameTimes_.size(), output.frames);
+        if (framesMade_ > 0) fmt::print(out, "frames         {} in {}\n", framesMade_, output.frames);
     }
 
     Scene scene_;
-    bool quiet_, rows_ = false, sampling_ = false;   // of the series; anything by time
+    View view_;   // of the scene's file: what a checkpoint holds
+    Window window_;
+    bool quiet_;
     Progress progress_;
     std::optional<Pictures>
         pictures_;  // before the simulation: no display is noticed before work begins
     std::unique_ptr<Simulation> simulation_;
     Probes probes_;
     std::optional<HealthGuard> guard_;
-    TimeSeries series_;
+    std::optional<SeriesFiles> series_;
+    std::vector<Recorder> recorders_;
     Measurement now_;
     std::string trouble_;  // why the run stopped early
-    int64_t first_ = 0, steps_ = 0, lastRow_ = 0;   // steps before this run, in it, until the last row
-    int64_t made_ = 0;                              // with those that were made in vain
+    int64_t first_ = 0, steps_ = 0, endStep_ = 0;   // of the whole run: before this part of it, until now, at its end or 0
+    int64_t made_ = 0;                              // here, with those that were made in vain
     std::vector<double> frameTimes_;                // s, of the frames written
-    double nextRow_ = 0, nextFrame_ = 0, nextCheckpoint_ = 0, written_ = -1;  // s simulated; the last: of the checkpoint
+    size_t framesMade_ = 0;                         // here, with those that were drawn twice
+    double written_ = -1;                           // s simulated, of the checkpoint
     double evaluationsBefore_ = 0;                  // this run
     double stepSeconds_ = 0;                      // of wall time
     StopSignals signals_;

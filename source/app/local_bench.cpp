@@ -2,8 +2,9 @@
 
 #include "app/scene_choice.h"
 #include "core/error.h"
+#include "core/output_file.h"
 #include "measure/chart.h"
-#include "measure/output_file.h"
+#include "measure/save_particles.h"
 #include "scene/json.h"
 #include "sim/simulation.h"
 

@@ -1,5 +1,6 @@
 #include "app/scene_choice.h"
 
+#include "app/go_on.h"
 #include "core/error.h"
 #include "measure/checkpoint.h"
 #include "scene/check.h"
@@ -11,7 +12,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <map>
+#include <utility>
 
 namespace spindrift {
 namespace {
@@ -67,22 +68,17 @@ void applyChoices(Scene& scene, const std::vector<KnobChoice>& choices) {
 
 namespace {
 
-// The knobs that a run is built from.
-std::map<std::string, std::string> builtFrom(const Scene& scene) {
-    std::map<std::string, std::string> values;
-    for (const char* part : {"simulation", "domain", "walls", "fluid"})
-        for (const auto& [path, value] : restartKnobs(scene))
-            if (path.starts_with(std::string(part) + ".")) values[path] = value;
-    return values;
+// The scene as its file says it, and that file.
+std::pair<Scene, std::string> sceneOf(const std::string& name) {
+    const std::string file = findScene(name.empty() ? "dam_break" : name);
+    if (isCheckpoint(file)) throw Error(Exit::Scene, file + ": is a checkpoint; here a scene is wanted");
+    return {loadScene(file), file};
 }
 
 }  // namespace
 
 Scene chooseScene(const std::string& name, const std::vector<KnobChoice>& choices) {
-    const std::string file = findScene(name.empty() ? "dam_break" : name);
-    if (isCheckpoint(file))
-        throw Error(Exit::Scene, file + ": is a checkpoint; here a scene is wanted");
-    Scene scene = loadScene(file);
+    auto [scene, file] = sceneOf(name);
     applyChoices(scene, choices);
     checkScene(scene, file);
     return scene;
@@ -94,16 +90,9 @@ std::unique_ptr<Simulation> startSimulation(const Scene& scene, const std::optio
 
 Start chooseStart(const std::string& name, const std::vector<KnobChoice>& choices) {
     std::error_code none;
-    if (!fs::is_regular_file(name, none) || !isCheckpoint(name))
-        return {chooseScene(name, choices), {}, findScene(name.empty() ? "dam_break" : name)};
-    Checkpoint checkpoint = readCheckpoint(name);
-    const auto before = builtFrom(checkpoint.scene);
-    applyChoices(checkpoint.scene, choices);
-    for (const auto& [path, value] : builtFrom(checkpoint.scene))
-        if (const auto old = before.find(path); old == before.end() || old->second != value)
-            throw Error(Exit::Usage, path + ": can't be changed in a run that has begun; start the scene again");
-    checkScene(checkpoint.scene, name, countOf(checkpoint.state.particles));
-    return {std::move(checkpoint.scene), std::move(checkpoint.state), name};
+    if (fs::is_regular_file(name, none) && isCheckpoint(name)) return goOn(name, choices);
+    const auto [own, file] = sceneOf(name);
+    return {chooseScene(name, choices), {}, file, own.view, own.window};
 }
 
 }  // namespace spindrift

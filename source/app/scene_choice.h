@@ -30,7 +30,10 @@ struct KnobChoice {
 struct Start {
     Scene scene;
     std::optional<RunState> state;
-    std::string file{};  // that it was read from
+    std::string file = {};   // that both were read from
+    View view = {};          // the scene's own looks, without the choices, which are for one run only: those of its checkpoints
+    Window window = {};
+    std::string said = {};   // of a run that goes on: one line about what it does and doesn't
 };
 // Sets the knobs, in order. Throws Error (Usage).
 void applyChoices(Scene&, const std::vector<KnobChoice>&);
@@ -38,7 +41,7 @@ void applyChoices(Scene&, const std::vector<KnobChoice>&);
 // The simulation of a scene, from its beginning or from a state.
 std::unique_ptr<Simulation> startSimulation(const Scene&, const std::optional<RunState>&);
 
-// As chooseScene; `name` may also be a checkpoint, whose physics the choices can't change.
+// As chooseScene; `name` may also be a checkpoint (go_on.h).
 Start chooseStart(const std::string& name, const std::vector<KnobChoice>&);
 
 // The scene of `name` ("" = the dam break) with the choices applied in their order, checked

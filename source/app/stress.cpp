@@ -1,7 +1,7 @@
 #include "app/stress.h"
 
 #include "core/error.h"
-#include "measure/output_file.h"
+#include "core/output_file.h"
 #include "measure/stability_map.h"
 #include "measure/stress.h"
 #include "scene/json.h"

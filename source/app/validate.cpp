@@ -1,7 +1,7 @@
 #include "app/validate.h"
 
 #include "core/error.h"
-#include "measure/output_file.h"
+#include "core/output_file.h"
 #include "measure/validation.h"
 #include "scene/check.h"
 #include "scene/json.h"

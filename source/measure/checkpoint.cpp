@@ -2,7 +2,7 @@
 
 #include "core/error.h"
 #include "core/hdf5_file.h"
-#include "measure/output_file.h"
+#include "core/output_file.h"
 #include "scene/json.h"
 #include "scene/sample_object.h"
 

@@ -2,13 +2,15 @@
 
 #include "core/error.h"
 #include "core/hdf5_file.h"
-#include "measure/output_file.h"
+#include "core/output_file.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
+#include <utility>
 
 namespace spindrift {
 namespace {
@@ -56,29 +58,52 @@ template <class F> void forValues(const Measurement& m, const F& f) {
 
 }  // namespace
 
-TimeSeries::TimeSeries(std::vector<Column> more) : more_(std::move(more)) {}
+TimeSeries::TimeSeries(std::vector<Column> more, const std::vector<PlanRow>& plan) : more_(std::move(more)) {
+    for (const PlanRow& row : plan) {
+        const bool ownTime = row.skipped.empty() && row.name.find(": ") == std::string::npos;
+        if (ownTime && !find(passes_, row.name)) passes_.push_back({row.name, "ms"});
+    }
+}
+
+void TimeSeries::goOn(SeriesTable earlier) {
+    CHECK(columns_.empty());
+    earlier_ = std::move(earlier);
+}
+
+// Those of this run come first.
+void TimeSeries::chooseColumns(const std::vector<Column>& measured) {
+    columns_ = measured;
+    columns_.insert(columns_.end(), more_.begin(), more_.end());
+    columns_.insert(columns_.end(), passes_.begin(), passes_.end());
+    std::vector<size_t> places;
+    for (const Column& c : earlier_.columns) {
+        const std::optional<size_t> known = find(columns_, c.name);
+        if (known && columns_[*known].unit != c.unit)
+            throw Error(Exit::Output, fmt::format("{}: {} is in [{}] there, here in [{}]; name another file for the series",
+                                                  earlier_.path, c.name, c.unit, columns_[*known].unit));
+        places.push_back(known.value_or(columns_.size()));
+        if (!known) columns_.push_back(c);
+    }
+    for (const std::vector<double>& before : std::exchange(earlier_, {}).rows) {
+        std::vector<double>& row = rows_.emplace_back(columns_.size(), std::nan(""));
+        for (size_t i = 0; i < places.size(); ++i) row[places[i]] = before[i];
+    }
+}
 
 void TimeSeries::add(const Measurement& m, const std::vector<PassTime>& passes, const std::vector<double>& more) {
     CHECK(more.size() == more_.size());
+    std::vector<Column> measured;
     std::vector<double> row;
-    const bool first = columns_.empty();
     forValues(m, [&](const std::string& name, const char* unit, double value) {
-        if (first) columns_.push_back({name, unit});
+        if (columns_.empty()) measured.push_back({name, unit});
         row.push_back(value);
     });
-    if (first) columns_.insert(columns_.end(), more_.begin(), more_.end());
+    if (columns_.empty()) chooseColumns(measured);
     row.insert(row.end(), more.begin(), more.end());
-    for (const PassTime& pass : passes) {
-        const auto named = [&](const Column& c) { return c.name == pass.name; };
-        if (std::none_of(columns_.begin(), columns_.end(), named))
-            columns_.push_back({pass.name, "ms"});
-    }
-    const size_t own = row.size();
-    row.resize(columns_.size());
-    for (size_t i = own; i < row.size(); ++i)
-        for (const PassTime& pass : passes)
-            if (columns_[i].name == pass.name && pass.runs > 0)
-                row[i] = pass.ms / double(pass.runs);
+    row.resize(row.size() + passes_.size(), 0);
+    row.resize(columns_.size(), std::nan(""));
+    for (const PassTime& pass : passes)
+        if (const auto at = find(columns_, pass.name); at && pass.runs > 0) row[*at] = pass.ms / double(pass.runs);
     rows_.push_back(std::move(row));
 }
 
@@ -88,20 +113,19 @@ size_t TimeSeries::dropAfter(double time) {
     return before - rows_.size();
 }
 
-double TimeSeries::valueAt(size_t row, size_t column) const {
-    return column < rows_[row].size() ? rows_[row][column] : 0;
+std::string TimeSeries::csvLine(size_t row) const {
+    std::string text;
+    for (double value : rows_[row]) fmt::format_to(std::back_inserter(text), "{}{:.9g}", text.empty() ? "" : ",", value);
+    return text + "\n";
 }
 
 std::string TimeSeries::csv() const {
     std::string text;
-    for (size_t i = 0; i < columns_.size(); ++i) {
-        const Column& c = columns_[i];
-        text += (i ? "," : "") + c.name + (c.unit.empty() ? "" : fmt::format(" [{}]", c.unit));
-    }
-    for (size_t r = 0; r < rows_.size(); ++r)
-        for (size_t i = 0; i < columns_.size(); ++i)
-            text += fmt::format("{}{:.9g}", i ? ',' : '\n', valueAt(r, i));
-    return text + "\n";
+    for (const Column& c : columns_)
+        text += (text.empty() ? "" : ",") + c.name + (c.unit.empty() ? "" : fmt::format(" [{}]", c.unit));
+    text += "\n";
+    for (size_t r = 0; r < rows_.size(); ++r) text += csvLine(r);
+    return text;
 }
 
 std::string TimeSeries::json() const {
@@ -113,7 +137,7 @@ std::string TimeSeries::json() const {
     for (size_t r = 0; r < rows_.size(); ++r) {
         text += r ? ",\n  [" : "\n  [";
         for (size_t i = 0; i < columns_.size(); ++i) {
-            const double value = valueAt(r, i);
+            const double value = rows_[r][i];
             text +=
                 (i ? ", " : "") + (std::isfinite(value) ? fmt::format("{:.9g}", value) : "null");
         }
@@ -123,12 +147,11 @@ std::string TimeSeries::json() const {
 }
 
 void TimeSeries::writeHdf5(const std::string& path) const {
-    requireWritable(path);
     replaceFile(path, [&](const std::string& temporary) {
         return hdf5::writeFile(temporary, [&](hid_t file) {
             std::vector<double> values(rows_.size());
             for (size_t i = 0; i < columns_.size(); ++i) {
-                for (size_t r = 0; r < rows_.size(); ++r) values[r] = valueAt(r, i);
+                for (size_t r = 0; r < rows_.size(); ++r) values[r] = rows_[r][i];
                 hdf5::writeNumbers(file, columns_[i].name, columns_[i].unit, values);
             }
         });

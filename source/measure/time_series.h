@@ -1,5 +1,6 @@
 #pragma once
 // What a run measured over time, as a table: CSV or JSON, units in the header.
+#include "measure/read_series.h"
 #include "sim/simulation.h"
 
 #include <string>
@@ -7,21 +8,25 @@
 
 namespace spindrift {
 
-struct Column { std::string name, unit; };
-
 class TimeSeries {
 public:
-    // `more` are columns beside those of a Measurement; each row has a value for each of them.
-    explicit TimeSeries(std::vector<Column> more = {});
-    // Appends a row. `passes` are the times since the last row; a pass seen later than others gets
-    // a column of its own then, 0 where it didn't run.
+    // `more` are columns beside those of a Measurement; each row has a value for each of them. The times of the plan's passes follow
+    // them. Which columns there are is certain from the first row on.
+    explicit TimeSeries(std::vector<Column> more = {}, const std::vector<PlanRow>& plan = {});
+    // Rows that an earlier run has left; it gets its own columns too, NaN where one run has no value. Throws Error (Output) when units
+    // differ. Before the first row.
+    void goOn(SeriesTable earlier);
+    // Appends a row. `passes` are the times since the last row; 0 where one didn't run.
     void add(const Measurement&, const std::vector<PassTime>& passes, const std::vector<double>& more = {});
     size_t size() const { return rows_.size(); }
+    // s, of the last row; -1 when there is none.
+    double lastTime() const { return rows_.empty() ? -1 : rows_.back()[0]; }
     // Forgets the rows after this time, s: the run has gone back to it. Returns how many.
     size_t dropAfter(double time);
 
     // "time [s],..." then a line a row. Values that are no numbers are written as nan.
     std::string csv() const;
+    std::string csvLine(size_t row) const;
     // {"columns": [{"name": "time", "unit": "s"}, ...], "rows": [[...], ...]}; no numbers become
     // null.
     std::string json() const;
@@ -29,10 +34,11 @@ public:
     void writeHdf5(const std::string& path) const;
 
 private:
-    double valueAt(size_t row, size_t column) const;
+    void chooseColumns(const std::vector<Column>& measured);
 
-    std::vector<Column> more_, columns_;
-    std::vector<std::vector<double>> rows_;  // each as long as the columns were when it was added
+    std::vector<Column> more_, passes_, columns_;
+    std::vector<std::vector<double>> rows_;
+    SeriesTable earlier_;
 };
 
 }  // namespace spindrift

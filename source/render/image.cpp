@@ -1,16 +1,12 @@
 #include "render/image.h"
 
 #include "core/error.h"
+#include "core/output_file.h"
 
 #include <png.h>
 
 #include <cstdio>
-#include <cstring>
-#include <filesystem>
 #include <memory>
-#include <system_error>
-
-#include <unistd.h>
 
 namespace spindrift {
 
@@ -60,19 +56,11 @@ bool encode(std::FILE* file, const Image& image) {
 
 void writePng(const std::string& path, const Image& image) {
     CHECK(image.rgb.size() == size_t(image.width) * image.height * 3);
-    const std::string temporary = path + "." + std::to_string(getpid()) + ".part";
-    std::unique_ptr<std::FILE, Close> file(std::fopen(temporary.c_str(), "wb"));
-    if (!file)
-        throw Error(Exit::Output, path + ": " + std::strerror(errno) +
-                                      ": choose a folder that exists and can be written");
-    const bool written = encode(file.get(), image);
-    file.reset();
-    std::error_code failed;
-    if (written) std::filesystem::rename(temporary, path, failed);
-    if (!written || failed) {
-        std::filesystem::remove(temporary, failed);
-        throw Error(Exit::Output, path + ": the picture could not be written: is the disk full?");
-    }
+    requireFormat(path, {"png"});
+    replaceFile(path, [&](const std::string& temporary) {
+        std::unique_ptr<std::FILE, Close> file(std::fopen(temporary.c_str(), "wb"));
+        return file && encode(file.get(), image);
+    });
 }
 
 }  // namespace spindrift

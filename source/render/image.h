@@ -15,7 +15,7 @@ struct Image {
 // Throws Error (Scene: it's an input) when the file is missing or no PNG. Grey and alpha become
 // RGB.
 Image readPng(const std::string& path);
-// Written beside its place and renamed, so that nobody sees half a file. Throws Error (Output).
+// As all outputs (core/output_file.h). Throws Error (Output).
 void writePng(const std::string& path, const Image&);
 
 }  // namespace spindrift

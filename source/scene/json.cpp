@@ -120,7 +120,9 @@ Scene parseScene(const std::string& text, const std::string& place) {
 }
 
 Scene loadScene(const std::string& file) {
-    Scene scene = parseScene(readText(file), file);
+    const std::string text = readText(file);
+    Scene scene = parseScene(text, file);
+    if (parseJson(text, file).value("name", "").empty()) scene.name = std::filesystem::path(file).stem().string();
     // A file that a scene names is beside it; known by its whole path the scene can be saved anywhere.
     auto findBeside = [&](std::string& path) {
         if (!path.empty()) path = (std::filesystem::absolute(file).parent_path() / path).lexically_normal().string();

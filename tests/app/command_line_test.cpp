@@ -74,7 +74,20 @@ TEST_F(CommandLine, MistakesWithOutputsAreFoundBeforeTheRun) {
     expectMistake(endless + "--csv run --json run", Exit::Output, "two outputs want this file");
     expectMistake(endless + "--csv a.csv --screenshot missing/a.png", Exit::Output,
                   "missing/a.png");
+    expectMistake(endless + "--csv run --json ./run", Exit::Output, "two outputs want this file");
+    for (const char* wrong : {"--screenshot x.jpg", "--screenshot x.bmp", "--csv x.h5", "--json x.csv", "--hdf5 x.json", "--checkpoint x.png"})
+        expectMistake(endless + wrong, Exit::Output, "give it a name that ends in .");
     EXPECT_TRUE(files().empty()) << files().front();
+    write("scene.json", R"({"version": 2})");
+    expectMistake("scene.json --headless --json scene.json", Exit::Output, "the run is read from it");
+}
+
+TEST_F(CommandLine, AnUnnamedSceneIsNamedAfterItsFile) {
+    write("my flume.json", R"({"version": 2})"), write("b.json", R"({"version": 2, "name": "named"})"), write("old.json", R"({"simulation": {}})");
+    EXPECT_NE(call("'my flume.json' --print-config").text.find("\"name\": \"my flume\""), std::string::npos);
+    EXPECT_NE(call("b.json --print-config").text.find("\"name\": \"named\""), std::string::npos);
+    EXPECT_NE(call("old.json --print-config").text.find("\"name\": \"old\""), std::string::npos);
+    EXPECT_EQ(parseScene(call("'my flume.json' --print-config --set name=other").text, "printed").name, "other");
 }
 
 TEST_F(CommandLine, PrintConfigIsAScene) {

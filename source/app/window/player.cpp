@@ -73,7 +73,7 @@ void Player::begin(Loaded loaded, bool again) {
     rateTime_ = inForceSince_ = measurement_.time;
     rateSteps_ = firstSteps_ = measurement_.steps;
     savedSteps_ = 0;
-    stepsLeft_ = scene.compute.steps;
+    stepsLeft_ = std::max<int64_t>(scene.compute.steps - measurement_.steps, 0);   // of a checkpoint's run
     lastProceed_ = rateSince_ = wallTime();
     applyWanted_ = underWay_ = stepWanted_ = stirWanted_ = holdWanted_ = collected_ = false;
     ++generation_;

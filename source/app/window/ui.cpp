@@ -1,7 +1,7 @@
 #include "app/window/ui.h"
 
 #include "core/error.h"
-#include "measure/output_file.h"
+#include "core/output_file.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "measure/output_file.h"
+#include "core/output_file.h"
 
 #include "core/error.h"
 

@@ -1,0 +1,32 @@
+#pragma once
+// Something that a run writes again and again: a row of its series, a frame, a checkpoint.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace spindrift {
+
+// Two times that should be the same, but are sums of different steps, are.
+inline bool isReached(double time, double now) { return now >= time * (1 - 1e-9); }
+
+// Among the multiples of `every` the first one that is still ahead.
+inline double multipleAfter(double time, double every) { return (std::floor(time / every * (1 + 1e-9)) + 1) * every; }
+
+// Writes at the multiples of an interval of simulated time, s.
+struct Recorder {
+    double every, next;
+    std::function<void()> write;
+    std::function<void(double time)> rewind;   // forgets what was written after this time
+
+    void writeIfDue(double now) {
+        if (!isReached(next, now)) return;
+        write();
+        next = multipleAfter(now, every);
+    }
+    void goBack(double now) {
+        rewind(now);
+        next = std::min(next, multipleAfter(now, every));
+    }
+};
+
+}  // namespace spindrift
