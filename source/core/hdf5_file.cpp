@@ -119,17 +119,6 @@ std::vector<double> readNumbers(hid_t file, const std::string& name) {
     return values;
 }
 
-std::string readUnit(hid_t file, const std::string& name) {
-    const Handle set(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, name);
-    if (H5Aexists(set, "unit") <= 0) return "";
-    const Handle attribute(H5Aopen(set, "unit", H5P_DEFAULT), H5Aclose, name);
-    const Handle type(H5Aget_type(attribute), H5Tclose, name);
-    if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0) throw Trouble{name};
-    std::string unit(H5Tget_size(type), 0);
-    require(H5Aread(attribute, type, unit.data()), name);
-    return unit;
-}
-
 std::vector<std::string> names(hid_t file) {
     std::vector<std::string> all;
     const auto note = [](hid_t, const char* name, const H5L_info_t*, void* list) -> herr_t {

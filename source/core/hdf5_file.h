@@ -59,8 +59,6 @@ struct Array {
     Array(hid_t file, const std::string& name, int rank);
 };
 std::vector<double> readNumbers(hid_t file, const std::string& name);
-// The attribute "unit"; "" when there is none.
-std::string readUnit(hid_t file, const std::string& name);
 // Of all that the file holds at its top.
 std::vector<std::string> names(hid_t file);
 
