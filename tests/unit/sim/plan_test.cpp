@@ -26,7 +26,7 @@ const Expected Scenes[] = {
                  "solid-collisions", 300},
     {"artery", "solids sort neighbours density walls forces contact extremes time-step objects integrate laminar-viscosity artificial-viscosity "
                "solid-collisions", 400},
-    {"oil_and_water", "sort neighbours density walls forces extremes time-step integrate viscosities-of-a-mixture", 250},
+    {"oil_and_water", "sort neighbours density walls forces extremes time-step integrate viscosities-of-a-mixture", 260},
     {"drops", "sort neighbours equation-of-state forces normals surface-tension extremes time-step kick transport drift laminar-viscosity "
               "artificial-viscosity", 500},
     {"poiseuille", "sort neighbours equation-of-state walls forces extremes time-step kick transport drift laminar-viscosity", 220},
