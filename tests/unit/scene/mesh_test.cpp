@@ -341,11 +341,9 @@ TEST(Meshes, ScenesNameTheirMistakes) {
     EXPECT_NE(
         refusal(mesh + R"(, "scale": 1000})").find("if the file is in millimetres, set it to 1"),
         std::string::npos);
-    EXPECT_NE(refusal(mesh + R"(, "offset": [5, 0, 0]})")
-                  .find("solids[0].offset: the mesh lies from (5.2, 0.2, 0.2) to (5.6, 0.5, 0.6) "
-                        "m, outside the domain; the "
-                        "offset [0.4, 0.1, -0."),
-              std::string::npos);
+    const std::string outside = refusal(mesh + R"(, "offset": [5, 0, 0]})");
+    EXPECT_NE(outside.find("solids[0].offset: the mesh lies from"), std::string::npos) << outside;
+    EXPECT_NE(outside.find("would put it into the domain's middle"), std::string::npos) << outside;
     EXPECT_NE(refusal(mesh + R"(, "offset": [500000, 0, 0]})")
                   .find("solids[0].offset: is so large that it is rounded to 0.06 m"),
               std::string::npos);

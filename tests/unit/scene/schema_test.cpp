@@ -60,7 +60,7 @@ TEST(Schema, EveryFieldOfASceneHasItsLine) {
                        1 /* probes */;
     EXPECT_EQ(knobCount(scene), fields);
 
-    EXPECT_EQ(memberKnobs<Body>(), fieldCount<Form>() + fieldCount<Body>() - 4 /* the base, and normal, scale and offset of solids */);
+    EXPECT_EQ(memberKnobs<Body>(), fieldCount<Form>() + fieldCount<Body>() - 2 /* the base, and normal of solids */);
     EXPECT_EQ(memberKnobs<Solid>(), fieldCount<Form>() + fieldCount<Solid>() - 1);
     EXPECT_EQ(memberKnobs<Object>(), fieldCount<Object>());
     EXPECT_EQ(memberKnobs<Grip>(), fieldCount<Grip>());
