@@ -114,9 +114,9 @@ public:
             scene_ = onDrawingDevice(std::move(scene_));
         }
         simulation_ = startSimulation(scene_, start.state);
-        series_.emplace(output, probes_.columns(), simulation_->plan(), start.state ? &start.state->clock : nullptr);
         guard_.emplace(*simulation_, scene_);
         now_ = simulation_->measure();
+        series_.emplace(output, probes_.columns(), simulation_->plan(), start.state ? &now_ : nullptr);
         first_ = steps_ = now_.steps, evaluationsBefore_ = now_.evaluations;
         endStep_ = scene_.compute.steps == 0 && output.time == 0 ? first_ + DefaultSteps : scene_.compute.steps;
         addRecorders();

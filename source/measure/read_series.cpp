@@ -93,16 +93,16 @@ SeriesTable readSeries(const std::string& path) {
     return table;
 }
 
-SeriesTable rowsBefore(const StepState& clock, SeriesTable table) {
+SeriesTable rowsBefore(const Measurement& now, SeriesTable table) {
     constexpr double Rounding = 1e-8;   // of numbers with nine digits
     const size_t time = *find(table.columns, "time"), step = *find(table.columns, "step");
-    const auto isBehind = [&](const std::vector<double>& row) { return row[step] > double(clock.steps); };
+    const auto isBehind = [&](const std::vector<double>& row) { return row[step] > double(now.steps); };
     for (const std::vector<double>& row : table.rows)
-        if (isBehind(row) ? !(row[time] >= clock.time * (1 - Rounding)) : !(row[time] <= clock.time * (1 + Rounding)))
+        if (isBehind(row) ? !(row[time] >= now.time * (1 - Rounding)) : !(row[time] <= now.time * (1 + Rounding)))
             refuse(table.path, fmt::format("it is another run's, at step {:.0f} after {:.6g} s, but this one goes on from step {} after {:.6g} s",
-                                           row[step], row[time], clock.steps, clock.time));
+                                           row[step], row[time], now.steps, now.time));
     std::erase_if(table.rows, isBehind);
-    if (!table.rows.empty() && table.rows.back()[step] == double(clock.steps)) table.rows.back()[time] = clock.time;   // with all digits
+    if (!table.rows.empty() && table.rows.back()[step] == double(now.steps)) table.rows.back()[time] = now.time;   // with all digits
     return table;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 // The time series that an earlier run has left, for one that goes on.
-#include "sim/run_state.h"
+#include "sim/simulation.h"
 
 #include <optional>
 #include <string>
@@ -24,6 +24,6 @@ SeriesTable readSeries(const std::string& path);
 
 // The rows up to where a run goes on; those behind it will be written anew. Throws Error (Output) when they are another run's: their steps
 // have other times.
-SeriesTable rowsBefore(const StepState&, SeriesTable);
+SeriesTable rowsBefore(const Measurement& now, SeriesTable);
 
 }  // namespace spindrift

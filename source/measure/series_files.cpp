@@ -9,11 +9,11 @@ namespace spindrift {
 namespace {
 
 // Files of one run may be of different length, when one of them was asked for later than others.
-std::optional<SeriesTable> longestBefore(const StepState& clock, const std::vector<std::string>& paths) {
+std::optional<SeriesTable> longestBefore(const Measurement& now, const std::vector<std::string>& paths) {
     std::optional<SeriesTable> longest;
     for (const std::string& path : paths) {
         if (path.empty() || isStream(path) || !std::filesystem::exists(path)) continue;
-        SeriesTable table = rowsBefore(clock, readSeries(path));
+        SeriesTable table = rowsBefore(now, readSeries(path));
         if (!longest || table.rows.size() > longest->rows.size()) longest = std::move(table);
     }
     return longest;
@@ -21,14 +21,15 @@ std::optional<SeriesTable> longestBefore(const StepState& clock, const std::vect
 
 }  // namespace
 
-SeriesFiles::SeriesFiles(const Output& output, std::vector<Column> more, const std::vector<PlanRow>& plan, const StepState* goesOnFrom)
+SeriesFiles::SeriesFiles(const Output& output, std::vector<Column> more, const std::vector<PlanRow>& plan, const Measurement* goesOnFrom)
     : csv_(output.csv), json_(output.json), hdf5_(output.hdf5), series_(std::move(more), plan) {
     if (!goesOnFrom) return;
-    std::optional<SeriesTable> before = longestBefore(*goesOnFrom, {hdf5_, csv_, json_});
-    if (!before) return;
+    const std::optional<SeriesTable> before = longestBefore(*goesOnFrom, {hdf5_, csv_, json_});
+    if (!before || before->rows.empty()) return;
     constexpr double Rounding = 1e-8;   // up, of the nine digits that a file has
-    if (!before->rows.empty()) lastTime_ = before->rows.back()[*find(before->columns, "time")] * (1 + Rounding);
-    series_.goOn(std::move(*before));
+    series_.goOn(*goesOnFrom, *before);
+    lastTime_ = series_.lastTime() * (1 + Rounding);
+    changed_ = true;   // the other files may be shorter
 }
 
 void SeriesFiles::add(const Measurement& m, const std::vector<PassTime>& passes, const std::vector<double>& more) {
@@ -52,6 +53,7 @@ void SeriesFiles::dropAfter(double time) {
 }
 
 void SeriesFiles::finish() {
+    if (!csvFile_ && !csv_.empty() && series_.size() > 0) csvFile_.emplace(csv_, series_.csv());   // no row was left to be added
     replace(true);
     json_.clear(), hdf5_.clear();   // a stream gets them once
 }

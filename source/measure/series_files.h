@@ -15,7 +15,7 @@ namespace spindrift {
 class SeriesFiles {
 public:
     // A run that goes on from a checkpoint begins with the rows that its files have up to there.
-    SeriesFiles(const Output&, std::vector<Column> more, const std::vector<PlanRow>& plan, const StepState* goesOnFrom);
+    SeriesFiles(const Output&, std::vector<Column> more, const std::vector<PlanRow>& plan, const Measurement* goesOnFrom);
     void add(const Measurement&, const std::vector<PassTime>& passes, const std::vector<double>& more);
     // To be called often: replaces what is due.
     void keepUp();

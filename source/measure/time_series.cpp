@@ -10,7 +10,6 @@
 #include <cmath>
 #include <iterator>
 #include <optional>
-#include <utility>
 
 namespace spindrift {
 namespace {
@@ -65,26 +64,25 @@ TimeSeries::TimeSeries(std::vector<Column> more, const std::vector<PlanRow>& pla
     }
 }
 
-void TimeSeries::goOn(SeriesTable earlier) {
-    CHECK(columns_.empty());
-    earlier_ = std::move(earlier);
-}
-
-// Those of this run come first.
-void TimeSeries::chooseColumns(const std::vector<Column>& measured) {
-    columns_ = measured;
+void TimeSeries::chooseColumns(const Measurement& m) {
+    forValues(m, [&](const std::string& name, const char* unit, double) { columns_.push_back({name, unit}); });
     columns_.insert(columns_.end(), more_.begin(), more_.end());
     columns_.insert(columns_.end(), passes_.begin(), passes_.end());
+}
+
+void TimeSeries::goOn(const Measurement& now, const SeriesTable& earlier) {
+    CHECK(columns_.empty());
+    chooseColumns(now);
     std::vector<size_t> places;
-    for (const Column& c : earlier_.columns) {
+    for (const Column& c : earlier.columns) {
         const std::optional<size_t> known = find(columns_, c.name);
         if (known && columns_[*known].unit != c.unit)
             throw Error(Exit::Output, fmt::format("{}: {} is in [{}] there, here in [{}]; name another file for the series",
-                                                  earlier_.path, c.name, c.unit, columns_[*known].unit));
+                                                  earlier.path, c.name, c.unit, columns_[*known].unit));
         places.push_back(known.value_or(columns_.size()));
         if (!known) columns_.push_back(c);
     }
-    for (const std::vector<double>& before : std::exchange(earlier_, {}).rows) {
+    for (const std::vector<double>& before : earlier.rows) {
         std::vector<double>& row = rows_.emplace_back(columns_.size(), std::nan(""));
         for (size_t i = 0; i < places.size(); ++i) row[places[i]] = before[i];
     }
@@ -92,13 +90,9 @@ void TimeSeries::chooseColumns(const std::vector<Column>& measured) {
 
 void TimeSeries::add(const Measurement& m, const std::vector<PassTime>& passes, const std::vector<double>& more) {
     CHECK(more.size() == more_.size());
-    std::vector<Column> measured;
+    if (columns_.empty()) chooseColumns(m);
     std::vector<double> row;
-    forValues(m, [&](const std::string& name, const char* unit, double value) {
-        if (columns_.empty()) measured.push_back({name, unit});
-        row.push_back(value);
-    });
-    if (columns_.empty()) chooseColumns(measured);
+    forValues(m, [&](const std::string&, const char*, double value) { row.push_back(value); });
     row.insert(row.end(), more.begin(), more.end());
     row.resize(row.size() + passes_.size(), 0);
     row.resize(columns_.size(), std::nan(""));

@@ -13,9 +13,9 @@ public:
     // `more` are columns beside those of a Measurement; each row has a value for each of them. The times of the plan's passes follow
     // them. Which columns there are is certain from the first row on.
     explicit TimeSeries(std::vector<Column> more = {}, const std::vector<PlanRow>& plan = {});
-    // Rows that an earlier run has left; it gets its own columns too, NaN where one run has no value. Throws Error (Output) when units
-    // differ. Before the first row.
-    void goOn(SeriesTable earlier);
+    // Begins with the rows that an earlier part of this run has left; it gets that part's own columns too, NaN where one has no value.
+    // Throws Error (Output) when units differ. Before the first row.
+    void goOn(const Measurement& now, const SeriesTable& earlier);
     // Appends a row. `passes` are the times since the last row; 0 where one didn't run.
     void add(const Measurement&, const std::vector<PassTime>& passes, const std::vector<double>& more = {});
     size_t size() const { return rows_.size(); }
@@ -34,11 +34,10 @@ public:
     void writeHdf5(const std::string& path) const;
 
 private:
-    void chooseColumns(const std::vector<Column>& measured);
+    void chooseColumns(const Measurement&);
 
     std::vector<Column> more_, passes_, columns_;
     std::vector<std::vector<double>> rows_;
-    SeriesTable earlier_;
 };
 
 }  // namespace spindrift
