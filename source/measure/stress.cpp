@@ -204,10 +204,12 @@ std::vector<StressCase> tortures(bool full) {
     addFilled("cavity, Re 1e5", {"walls.moving_face=y_max", "walls.velocity=1,0,0", "fluid.viscosity=1e-5"}).energyIsConserved = false;
     addFilled("cavity, lid at 100 m/s", {"walls.moving_face=y_max", "walls.velocity=100,0,0", "fluid.viscosity=0.1"}).energyIsConserved = false;
     addFilled("start with half a spacing of disorder", {"simulation.jitter=0.5"});
+    // The original's boundary particles weigh what no density says, so that an impact on them gains energy (1.4 % here), which then stays:
+    // finite, in the box and no denser is all that is asked of it.
     out.push_back({"classic: viscosity 0.5, which gains energy at impact",
                    box("classic", {R"(fluid.bodies=[{"shape":"block","min":[0.1,0.3,0.1],"max":[0.6,0.9,0.6]}])", "fluid.viscosity=0.5",
                                    "simulation.kernel=cubic_spline", "simulation.support=2", "time.mode=fixed", "time.step=0.001"}),
-                   1000, {}, {}, true});
+                   1000, {}, {}, false});
     if (full) {
         // Few enough particles that threads would only wait for each other.
         out.push_back({"a million steps of a still pool", box("wcsph", {R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.6,0.3,1]}])", "domain.max=0.6,0.5,1", "simulation.spacing=0.025",
