@@ -75,6 +75,7 @@ void writeUnit(hid_t file, const std::string& name, const std::string& unit) {
     Handle space(H5Screate(H5S_SCALAR), H5Sclose, name);
     Handle type(H5Tcopy(H5T_C_S1), H5Tclose, name);
     require(H5Tset_size(type, unit.size()), name);
+    require(H5Tset_cset(type, H5T_CSET_UTF8), name);
     Handle attribute(H5Acreate2(set, "unit", type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, name);
     require(H5Awrite(attribute, type, unit.data()), name);
 }

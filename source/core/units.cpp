@@ -134,7 +134,7 @@ const std::vector<std::string>& common(const std::string& to) {
     static const std::pair<std::string, std::vector<std::string>> Quantities[] = {
         {"m", {"m", "mm", "cm", "um", "km", "in", "ft"}},
         {"m/s", {"m/s", "cm/s", "mm/s", "km/h", "ft/s"}},
-        {"kg/m^3", {"kg/m^3", "g/cm^3", "g/cc", "g/ml", "kg/l"}},
+        {"kg/m³", {"kg/m³", "g/cm³", "g/cc", "g/ml", "kg/l"}},
         {"Pa", {"Pa", "hPa", "kPa", "MPa", "bar", "mbar", "atm", "psi"}},
         {"s", {"s", "ms", "us", "min", "h"}},
         {"degrees", {"degrees", "deg", "rad", "turn"}},
@@ -142,7 +142,7 @@ const std::vector<std::string>& common(const std::string& to) {
     };
     static const std::vector<std::string> none;
     for (const auto& [name, units] : Quantities)
-        if (name == to) return units;
+        if (plain(name) == plain(to)) return units;
     return none;
 }
 

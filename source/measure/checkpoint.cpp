@@ -98,7 +98,7 @@ void writeAll(hid_t file, const Scene& scene, const RunState& s) {
         writeVectors(file, "object velocities", "m/s", s.objects.velocities);
         hdf5::writeArray(file, "broken bonds", H5T_STD_U8LE, H5T_NATIVE_UCHAR, s.objects.broken.data(), {s.objects.broken.size(), 1});
     }
-    if (!s.densities.empty()) writeFloats(file, "densities", "kg/m^3", s.densities.data(), s.densities.size(), 1);
+    if (!s.densities.empty()) writeFloats(file, "densities", "kg/m³", s.densities.data(), s.densities.size(), 1);
 }
 
 // How many of the walls belong to each solid.

@@ -13,7 +13,7 @@ struct TaylorGreenFlow {
     double decay(double t) const;              // of the velocity
 };
 
-// Flow between plates at y = 0 and y = L from rest: driven by a body force F (m/s^2) along x, or by the upper plate that slides
+// Flow between plates at y = 0 and y = L from rest: driven by a body force F (m/s²) along x, or by the upper plate that slides
 // with V (m/s). Morris, Fox and Zhu 1997, eq. 21 and 22.
 double poiseuilleFlow(double y, double t, double L, double nu, double F);
 double couetteFlow(double y, double t, double L, double nu, double V);
@@ -29,7 +29,7 @@ struct OscillatingDrop {
 // A sphere that sinks from rest and takes half the mass of the fluid in its place along; its drag grows as that of Schiller and Naumann 1933, to its
 // weight at the speed `terminal`. Without what is left of earlier motion (Basset's force), which delays it a little.
 struct SettlingSphere {
-    double diameter, density, fluidDensity, viscosity, gravity, terminal;   // m, kg/m^3, Pa s, m/s^2, m/s
+    double diameter, density, fluidDensity, viscosity, gravity, terminal;   // m, kg/m³, Pa s, m/s², m/s
     double depth = 0, speed = 0;                                            // m, m/s
     void advance(double dt);                                                // s
 };

@@ -6,7 +6,7 @@
 
 namespace spindrift {
 
-struct Fields { Vec3d velocity; double pressure = 0, density = 0; int neighbours = 0; };   // m/s, Pa, kg/m^3
+struct Fields { Vec3d velocity; double pressure = 0, density = 0; int neighbours = 0; };   // m/s, Pa, kg/m³
 
 // What lies beyond the sides of a box, axis by axis: nothing that counts, the box again, or its mirror image.
 struct Surroundings {

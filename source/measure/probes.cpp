@@ -103,7 +103,7 @@ void Probes::addFielded(const Scene& scene, const Probe& probe) {
     for (size_t k = 0; k < points.size() / perReading; ++k) {
         const std::string name = probe.kind == ProbeKind::Line ? probe.name + "[" + std::to_string(k) + "]" : probe.name;
         columns_.push_back({name + ".pressure", "Pa"});
-        columns_.push_back({name + ".density", "kg/m^3"});
+        columns_.push_back({name + ".density", "kg/m³"});
         for (const char* axis : AxisNames) columns_.push_back({name + ".velocity_" + axis, "m/s"});
     }
 }

@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/hdf5_file.h"
 #include "core/output_file.h"
+#include "core/units.h"
 
 #include <fmt/format.h>
 
@@ -32,7 +33,7 @@ constexpr Quantity Quantities[] = {
     {"center_of_mass_x", "m", [](const Measurement& m) { return m.centerOfMass.x; }},
     {"center_of_mass_y", "m", [](const Measurement& m) { return m.centerOfMass.y; }},
     {"center_of_mass_z", "m", [](const Measurement& m) { return m.centerOfMass.z; }},
-    {"mean_density", "kg/m^3", [](const Measurement& m) { return m.meanDensity; }},
+    {"mean_density", "kg/m³", [](const Measurement& m) { return m.meanDensity; }},
     {"density_error", "1", [](const Measurement& m) { return m.densityError; }},
     {"max_density_error", "1", [](const Measurement& m) { return m.maxDensityError; }},
     {"max_speed", "m/s", [](const Measurement& m) { return m.maxSpeed; }},
@@ -76,7 +77,7 @@ void TimeSeries::goOn(const Measurement& now, const SeriesTable& earlier) {
     std::vector<size_t> places;
     for (const Column& c : earlier.columns) {
         const std::optional<size_t> known = find(columns_, c.name);
-        if (known && columns_[*known].unit != c.unit)
+        if (known && unitFactor(c.unit, columns_[*known].unit) != 1.0)   // however it is spelt
             throw Error(Exit::Output, fmt::format("{}: {} is in [{}] there, here in [{}]; name another file for the series",
                                                   earlier.path, c.name, c.unit, columns_[*known].unit));
         places.push_back(known.value_or(columns_.size()));

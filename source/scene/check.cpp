@@ -138,7 +138,7 @@ void checkRareForces(const Scene& scene) {
     if (several && f.bodies.size() > 65535) refuse("fluid.bodies", "are more than the 65535 that a mixture can have; join some");
     for (size_t b = 0; b < f.bodies.size(); ++b)
         if (restDensity(scene, f.bodies[b]) < 0.01f * f.restDensity || restDensity(scene, f.bodies[b]) > 100 * f.restDensity)
-            refuse(bodyPath(b) + ".rest_density", fmt::format("{} kg/m^3 is more than 100 times lighter or heavier than fluid.rest_density, {} kg/m^3; "
+            refuse(bodyPath(b) + ".rest_density", fmt::format("{} kg/m³ is more than 100 times lighter or heavier than fluid.rest_density, {} kg/m³; "
                                                               "bring them closer", restDensity(scene, f.bodies[b]), f.restDensity));
     if (f.surfaceTension > 0 && formulation != Formulation::DeltaPlus)
         refuse("fluid.surface_tension", fmt::format("needs particles that are kept evenly spread, or surfaces tear themselves apart; {} does "
@@ -237,8 +237,8 @@ void checkDensities(const std::string& body, const std::string& file, const Part
     if (table.densities.empty()) return;
     const auto [least, most] = std::minmax_element(table.densities.begin(), table.densities.end());
     if (*most < 0.01 * rest || *least > 100 * rest)
-        refuse(body, fmt::format("{}: rho is {:.4g} to {:.4g} kg/m^3, and {:.4g} at rest; name its "
-                                 "unit in the header, as rho [g/cm^3], or set "
+        refuse(body, fmt::format("{}: rho is {:.4g} to {:.4g} kg/m³, and {:.4g} at rest; name its "
+                                 "unit in the header, as rho [g/cm³], or set "
                                  "fluid.rest_density",
                                  file, *least, *most, rest));
 }

@@ -52,9 +52,9 @@ void visitKnobs(Historical& h, Visitor&& visit) {
           Knob{"", 1, 1e6f, "particles of the block along x, y, z"});
     visit("simulation.box_boundary", s.boxBoundary, Knob{"", 0, 0, "false: boundary particles"});
     auto& f = h.fluid;
-    visit("fluid.gravity", f.gravity, Knob{"m/s^2", -100, 100, "gravity along y"});
+    visit("fluid.gravity", f.gravity, Knob{"m/s²", -100, 100, "gravity along y"});
     visit("fluid.mass", f.mass, Knob{"kg", 1e-12f, 1e6f, "mass of a particle"});
-    visit("fluid.density", f.density, Knob{"kg/m^3", 1e-3f, 1e5f, "density at rest"});
+    visit("fluid.density", f.density, Knob{"kg/m³", 1e-3f, 1e5f, "density at rest"});
     visit("fluid.viscosity", f.viscosity, Knob{"", 0, 1000, "viscosity"});
     visit("fluid.stiffness", f.stiffness, Knob{"Pa", 0, 1e10f, "pressure scale"});
 }

@@ -18,7 +18,7 @@ namespace spindrift {
 namespace {
 
 constexpr const char* Names[] = {"x", "y", "z", "vx", "vy", "vz", "rho", "p"};
-constexpr const char* Units[] = {"m", "m", "m", "m/s", "m/s", "m/s", "kg/m^3", "Pa"};
+constexpr const char* Units[] = {"m", "m", "m", "m/s", "m/s", "m/s", "kg/m³", "Pa"};
 constexpr size_t Columns = std::size(Names), Rho = 6, P = 7;
 using Values = std::array<std::vector<double>, Columns>;   // of each column, empty where there is none
 

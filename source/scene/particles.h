@@ -14,7 +14,7 @@ struct Placement {
     std::vector<Vec3> positions, velocities, walls;
     std::vector<float> pressures;
     std::vector<int> solidSizes;
-    std::vector<float> densities{};   // kg/m^3, 0 where the pressure says; none at all where no file had any
+    std::vector<float> densities{};   // kg/m³, 0 where the pressure says; none at all where no file had any
     std::vector<uint16_t> bodies{};   // of a mixture: which body each particle is of
 };
 

@@ -53,7 +53,7 @@ struct Form {
 struct Body : Form {
     Vec3 velocity{0, 0, 0};                     // m/s; for a field its amplitude is the length
     Field field = Field::Uniform;               // of velocity at the start
-    float restDensity = 0;                      // kg/m^3 at rest, 0 = the fluid's; other ones make a mixture
+    float restDensity = 0;                      // kg/m³ at rest, 0 = the fluid's; other ones make a mixture
     float viscosity = -1;                       // Pa s, -1 = the fluid's
     StartPressure pressure = StartPressure::None;   // where a field has its own, that is added
     std::string name{};                         // of its fluid, in the legend; "" = by its density
@@ -73,7 +73,7 @@ struct Solid : Form {
     Axis spinAxis = Axis::Z;                    // through its middle; keyframes turn about it too
     Keyframes keyframes;                        // in the order of their times
     std::string motion;                         // a CSV that becomes the keyframes when the scene is read
-    float density = 0;                          // kg/m^3 of one that floats, 0 = it moves as prescribed
+    float density = 0;                          // kg/m³ of one that floats, 0 = it moves as prescribed
     float friction = 0.3f;                      // Coulomb's coefficient where one that floats touches walls and other solids
     bool floats() const { return density > 0; }
     bool moves() const { return !keyframes.empty() || velocity != Vec3{} || spin != 0 || floats(); }
@@ -94,7 +94,7 @@ struct Object {
     Vec3 offset{0, 0, 0};                       // m, of its origin
     float thickness = 0.01f;                    // m, of a wall: one layer of particles, or more where a sheet or a tube is thicker than a spacing
     float spacing = 0;                          // m, of its particles, 0 = simulation.spacing
-    float density = 1000;                       // kg/m^3
+    float density = 1000;                       // kg/m³
     float youngsModulus = 1e5f;                 // Pa
     float damping = 0.1f;                       // of bonds, share of the critical one
     float breakingStrain = 0;                   // at which bonds break, 0 = never
@@ -148,13 +148,13 @@ struct SimulationKnobs {
     float spacing = 0.02f;                      // m, initial distance of particles
     float support = 2.6f;                       // support radius R / spacing
     PressureForm pressureForm = PressureForm::Squares;   // of the forces between two particles
-    Vec3 gravity{0, -9.81f, 0};                 // m/s^2
+    Vec3 gravity{0, -9.81f, 0};                 // m/s²
     float gravityRamp = 0;                      // s in which gravity grows from 0, 0 = there at once
     float centralRate = 0;                      // 1/s, Omega of a force -Omega^2 r towards the domain's centre
     StartPlaces placement = StartPlaces::Lattice;   // of the particles in the bodies
     float jitter = 0;                           // random displacement of the start's lattice / spacing, each axis
     int seed = 1;                               // of the jitter, and of relaxed places
-    float accelerationLimit = 0;                // m/s^2, caps the pressure acceleration; 0 = off
+    float accelerationLimit = 0;                // m/s², caps the pressure acceleration; 0 = off
 };
 
 struct Domain {
@@ -174,7 +174,7 @@ struct Walls {
 };
 
 struct Fluid {
-    float restDensity = 1000;                   // kg/m^3
+    float restDensity = 1000;                   // kg/m³
     float particleMass = 0;                     // kg, 0 = rest density x spacing^3
     float soundSpeed = 0;                       // m/s, 0 = speed_ratio x the expected largest speed
     float speedRatio = 10;                      // sound speed / expected largest speed
@@ -183,7 +183,7 @@ struct Fluid {
     float velocityTransfer = 0;                 // 1/s, at which neighbours take over each other's velocity
     float buoyancy = 0;                         // of who is lighter than its surroundings, in units of gravity
     float dissipation = 0;                      // 1/s, at which motion fades
-    float airDensity = 0;                       // kg/m^3, of the air that slows drops; 0 = none
+    float airDensity = 0;                       // kg/m³, of the air that slows drops; 0 = none
     float dragCoefficient = 0.47f;              // of the spheres as which it slows them
     Vec3 wind{0, 0, 0};                         // m/s, of that air
     float viscosity = 0.001f;                   // Pa s, dynamic (Morris 1997); classic: its own coefficient
@@ -289,7 +289,7 @@ float particleMass(const Scene&);               // kg; in two dimensions of a sl
 bool carriesDensity(const Scene&);
 // Whether there is velocity transfer or buoyancy.
 bool mixes(const Scene&);
-// Of a body at rest, kg/m^3, and of its fluid, Pa s: its own, or those of all.
+// Of a body at rest, kg/m³, and of its fluid, Pa s: its own, or those of all.
 float restDensity(const Scene&, const Body&);
 float viscosity(const Scene&, const Body&);
 // Whether its bodies are of more than one fluid.

@@ -103,7 +103,7 @@ void visitMember(B& b, const std::string& at, Visitor&& visit) {
           Knob{"", 0, 0, "of its fluid, in the legend of a mixture; without one its density names it",
                Restart});
     visit(at + ".rest_density", b.restDensity,
-          Knob{"kg/m^3", 0, 1e5f, "of this body's fluid, 0 = fluid.rest_density; with another one fluids lie above each other", Restart});
+          Knob{"kg/m³", 0, 1e5f, "of this body's fluid, 0 = fluid.rest_density; with another one fluids lie above each other", Restart});
     visit(at + ".viscosity", b.viscosity, Knob{"Pa s", -1, 1000, "of this body's fluid, -1 = fluid.viscosity", Restart});
     if (b.shape == Shape::File) {
         visit(at + ".path", b.path,
@@ -147,7 +147,7 @@ void visitMember(S& s, const std::string& at, Visitor&& visit) {
                "s, m and degrees, or units of the header, as x [mm]",
                Restart});
     visit(at + ".density", s.density,
-          Knob{"kg/m^3", 0, 1e5f, "lets it float: fluid, gravity and what it touches move it, velocity and spin are those at the start; 0 = it moves as prescribed", Restart});
+          Knob{"kg/m³", 0, 1e5f, "lets it float: fluid, gravity and what it touches move it, velocity and spin are those at the start; 0 = it moves as prescribed", Restart});
     visit(at + ".friction", s.friction, Knob{"", 0, 10, "of what floats: Coulomb's coefficient where it touches walls and other solids; the lower one counts", Restart});
 }
 
@@ -181,7 +181,7 @@ void visitMember(O& o, const std::string& at, Visitor&& visit) {
                    Restart});
     visit(at + ".spacing", o.spacing,
           Knob{"m", 0, 1e4f, "of its particles, 0 = simulation.spacing", Restart});
-    visit(at + ".density", o.density, Knob{"kg/m^3", 1e-3f, 1e5f, "of what it is made of", Restart});
+    visit(at + ".density", o.density, Knob{"kg/m³", 1e-3f, 1e5f, "of what it is made of", Restart});
     visit(at + ".youngs_modulus", o.youngsModulus, Knob{"Pa", 0, 1e12f, "how stiff it is; Poisson's ratio is 1/4, of a single layer 1/3", Restart});
     visit(at + ".damping", o.damping, Knob{"", 0, 2, "of its bonds, share of the critical one", Restart});
     visit(at + ".breaking_strain", o.breakingStrain, Knob{"", 0, 1e3f, "at which bonds break for good, 0 = never", Restart});
@@ -332,7 +332,7 @@ void visitPhysics(S& s, Visitor&& visit) {
     visit("simulation.support", sim.support, Knob{"", 1, 6, "support radius / spacing", Restart});
     visit("simulation.pressure_form", sim.pressureForm,
           Knob{"", 0, 0, "of wcsph: squares: p_i / rho_i^2 + p_j / rho_j^2; mean: (p_i + p_j) / (2 rho_i rho_j)"});
-    visit("simulation.gravity", sim.gravity, Knob{"m/s^2", -100, 100, "gravity; along a periodic axis the force that drives a channel's flow"});
+    visit("simulation.gravity", sim.gravity, Knob{"m/s²", -100, 100, "gravity; along a periodic axis the force that drives a channel's flow"});
     visit("simulation.gravity_ramp", sim.gravityRamp,
           Knob{"s", 0, 1e4f,
                "gravity grows from 0 to its full value in this time, without a jerk: for a pool that begins without the pressure "
@@ -348,7 +348,7 @@ void visitPhysics(S& s, Visitor&& visit) {
           Knob{"", 0, 0.5f, "random displacement of each particle of the lattice at the start / spacing", Restart});
     visit("simulation.seed", sim.seed, Knob{"", 0, 1e9f, "of the jitter, and of relaxed places", Restart});
     visit("simulation.acceleration_limit", sim.accelerationLimit,
-          Knob{"m/s^2", 0, 1e6f, "caps the pressure acceleration, 0 = off"});
+          Knob{"m/s²", 0, 1e6f, "caps the pressure acceleration, 0 = off"});
 
     visit("domain.min", s.domain.min, Knob{"m", -1e7f, 1e7f, "lower corner of the box", Restart});
     visit("domain.max", s.domain.max, Knob{"m", -1e7f, 1e7f, "upper corner of the box", Restart});
@@ -391,7 +391,7 @@ template <class S, class Visitor>
 void visitFluid(S& s, Visitor&& visit) {
     auto& f = s.fluid;
     visit("fluid.rest_density", f.restDensity,
-          Knob{"kg/m^3", 1e-3f, 1e5f, "density at rest", Restart});
+          Knob{"kg/m³", 1e-3f, 1e5f, "density at rest", Restart});
     visit("fluid.particle_mass", f.particleMass,
           Knob{"kg", 0, 1e18f, "mass of a particle, 0 = rest density x spacing^3", Restart});
     visit("fluid.sound_speed", f.soundSpeed,
@@ -420,7 +420,7 @@ void visitFluid(S& s, Visitor&& visit) {
           Knob{"", 0, 100, "who is lighter than the mean in its support rises with this times gravity times the share, 0 = off"});
     visit("fluid.dissipation", f.dissipation, Knob{"1/s", 0, 100, "rate at which all motion fades, 0 = off"});
     visit("fluid.air_density", f.airDensity,
-          Knob{"kg/m^3", 0, 100, "of air that slows drops and surfaces (wcsph), 0 = none"});
+          Knob{"kg/m³", 0, 100, "of air that slows drops and surfaces (wcsph), 0 = none"});
     visit("fluid.drag_coefficient", f.dragCoefficient, Knob{"", 0, 10, "of a particle in that air, a sphere of its volume"});
     visit("fluid.wind", f.wind, Knob{"m/s", -1e3f, 1e3f, "velocity of that air"});
 }

@@ -154,7 +154,7 @@ struct MoveFloating {
                 fluidMass * torque + cross(Vec3d{out.x, out.y, out.z}, fluid) + touches[s].torque};
     }
     HD void pull(Touch& w, const RigidBody& body, const SolidMotion& m, const SolidState& s) const {
-        const double rate = 15, most = 60;   // 1/s, m/s^2
+        const double rate = 15, most = 60;   // 1/s, m/s²
         const Vec3d target{hold.target.x, hold.target.y, hold.target.z};
         const Vec3d wanted = (rate * rate) * (target - Vec3d{s.middle.x, s.middle.y, s.middle.z}) - (2 * rate) * m.velocity;
         const double size = sqrt(dot(wanted, wanted));

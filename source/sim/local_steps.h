@@ -207,7 +207,7 @@ struct KickDue {
         store(v.fluid.level, i, select(isDue, level, before));
         store(v.fluid.velocity, i, addScaled(u, select(isDue, step, R(0)), a));
     }
-    static constexpr real little = real(1e-3);   // m/s, m/s^2
+    static constexpr real little = real(1e-3);   // m/s, m/s²
 };
 
 // The largest speed, the deepest level, and how many particles were awake and due.

@@ -18,7 +18,7 @@ struct GripKeys { int first, end; };
 // Particles of all objects in the order of their ids, which are 0, 1, ...
 struct ObjectParticles {
     int count;
-    VectorField position, velocity, acceleration;   // m, m/s, m/s^2
+    VectorField position, velocity, acceleration;   // m, m/s, m/s²
     VectorField home;                               // m, at the start
     ScalarField mass, radius;                       // kg, m
     ScalarField torn;                               // 1: a bond of it is broken

@@ -380,7 +380,7 @@ template <class Kernel, bool surface> struct ComputeTransport {
 
 // The largest speed and acceleration, for the time step; with shifting also the sum of rho0/rho.
 struct Extremes {
-    float speed2 = 0, acceleration2 = 0;   // (m/s)^2, (m/s^2)^2
+    float speed2 = 0, acceleration2 = 0;   // (m/s)^2, (m/s²)^2
     double volume = 0, count = 0;
     HD_OUT void add(const Extremes& o) {
         speed2 = o.speed2 > speed2 ? o.speed2 : speed2;

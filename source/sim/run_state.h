@@ -12,7 +12,7 @@ struct RunState {
     Placement particles;   // in the order of their ids
     StepState clock;
     FluidExtent start;
-    std::vector<float> densities;   // kg/m^3, where they are carried; empty at the beginning, when pressures say
+    std::vector<float> densities;   // kg/m³, where they are carried; empty at the beginning, when pressures say
     std::vector<SolidMotion> solids;   // one for each, where any floats or has been dragged; otherwise, and at the beginning, empty
     ObjectState objects;
 

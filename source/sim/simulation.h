@@ -45,7 +45,7 @@ struct Measurement {
     double potentialEnergy = 0;      // -sum m g.x, zero at the domain's lower corner
     Vec3d momentum;                  // sum m v
     Vec3d centerOfMass;              // world coordinates
-    double meanDensity = 0;          // kg/m^3
+    double meanDensity = 0;          // kg/m³
     double densityError = 0;         // mean of max(rho/rho0 - 1, 0): compression only
     double maxDensityError = 0;      // largest rho/rho0 - 1
     double maxSpeed = 0;             // m/s

@@ -205,7 +205,7 @@ struct KeepWallMass {
     }
 };
 
-// What fluid does to solids' particles: the terms of ComputeForces with their signs changed. m/s^2 per fluid particle's mass; of pressure, and
+// What fluid does to solids' particles: the terms of ComputeForces with their signs changed. m/s² per fluid particle's mass; of pressure, and
 // of the others.
 template <class Kernel, class Terms> struct ComputeWallLoads;
 template <class Kernel, class... Terms> struct ComputeWallLoads<Kernel, TermList<Terms...>> {

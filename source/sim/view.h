@@ -17,11 +17,11 @@ struct Particles {
     int* id;
     VectorField position;          // m, relative to the domain's lower corner
     VectorField velocity;          // m/s; of boundary particles the one that makes fluid stick to them, where it does
-    VectorField acceleration;      // m/s^2
+    VectorField acceleration;      // m/s²
     VectorField addedForce;        // sums of pairs for what comes on top, in units of gradientScale; where there is any
     VectorField normal;            // of the surface, inward, of length 1, or 0 where there is none; with surface tension
     ScalarField normalLength;      // 1/m, |sum_j V grad W|
-    ScalarField density;           // kg/m^3; of boundary particles only where density gradients are wanted
+    ScalarField density;           // kg/m³; of boundary particles only where density gradients are wanted
     ScalarField inverseDensity;    // m^3/kg
     ScalarField pressureTerm;      // p / rho^2
     ScalarField mass;              // boundary particles only (Akinci 2012): m_b / m
@@ -29,10 +29,10 @@ struct Particles {
     VectorField ownVelocity;       // m/s, boundary particles only: of the wall itself, where any moves
     ScalarField densityRate;       // kg/(m^3 s), where density is carried
     VectorField shiftVelocity;     // m/s, where particles are shifted: how much faster than the fluid they move,
-    VectorField shiftAcceleration; // m/s^2, and what a particle's velocity changes by for being elsewhere
+    VectorField shiftAcceleration; // m/s², and what a particle's velocity changes by for being elsewhere
     VectorField keptPosition;      // m, what the integrator keeps while forces are evaluated elsewhere; with solids, after the drift, where its way began
     VectorField keptVelocity;      // m/s
-    ScalarField keptDensity;       // kg/m^3
+    ScalarField keptDensity;       // kg/m³
     ScalarField massRatio;         // of a mixture: rest density / the scene's. Density and what follows from it are those of the same particle of the
                                    // scene's fluid, which has its volume and pressure; forces are divided by the ratio
     ScalarField viscosity;         // of a mixture, Pa s
@@ -112,7 +112,7 @@ struct Constants {
     real kernelScale, gradientScale;              // m norm/R^3, m gradientNorm/R^5, m the mass in sums
     real selfWeight;                              // 1: a particle counts itself in its density; 0: not
     real wallFactor, wallMassFloor;               // boundary mass m_b = wallFactor rho0 / sum W; floor in units of m
-    real restDensity;                             // kg/m^3
+    real restDensity;                             // kg/m³
     real stiffness; int gamma;                    // p = p0 + k ((rho/rho0)^gamma - 1), Pa
     real backgroundPressure;                      // p0, Pa
     real leastPressure;                           // Pa
@@ -124,7 +124,7 @@ struct Constants {
     real laminar;                                 // 2 mu, Pa s, for the kernel's own sums of Laplacians
     real artificial;                              // alpha c h / 2, m^2/s
     real classicViscosity;                        // nu m / (rho0 pi R^5) in units of gradientScale
-    real surfaceTension;                          // 2 sigma / rho0, m^3/s^2
+    real surfaceTension;                          // 2 sigma / rho0, m³/s^2
     real normalScale;                             // m gradientNorm / (rho0 R^5) of MeanKernel
     real leastNormal;                             // 1/m: shorter ones belong to no surface
     real velocityTransfer;                        // rate kernelScale / 2 in units of gradientScale
@@ -133,8 +133,8 @@ struct Constants {
     Vector<real> wind;                            // m/s
     real aloneDensity;                            // of a particle without neighbours / rho0
     real eta2;                                    // 0.01 h^2, keeps 1/d^2 finite
-    real accelerationLimit;                       // m/s^2
-    Vector<real> gravity;                         // m/s^2
+    real accelerationLimit;                       // m/s²
+    Vector<real> gravity;                         // m/s²
     real gravityRate;                             // 1/s, how fast it grows from 0; 0: it is there at once
     real centralPull;                             // 1/s^2, Omega^2 of -Omega^2 (x - center)
     Vector<real> center;                          // m
@@ -188,7 +188,7 @@ struct View {
     Blocks blocks;
 };
 
-// m/s^2, at the run's time, which is on the device: a recorded step needs no new constants while it grows. Passes ask outside of their loops: a branch among
+// m/s², at the run's time, which is on the device: a recorded step needs no new constants while it grows. Passes ask outside of their loops: a branch among
 // their sums would keep the compiler from fusing multiplications with additions, and change bits.
 HD inline Vector<real> gravityNow(const View& v) {
     if (v.c.gravityRate <= 0) return v.c.gravity;
@@ -196,7 +196,7 @@ HD inline Vector<real> gravityNow(const View& v) {
     return {share * v.c.gravity.x, share * v.c.gravity.y, share * v.c.gravity.z};
 }
 
-// What pulls at every particle, m/s^2.
+// What pulls at every particle, m/s².
 template <class R> HD inline Vector<R> bodyForce(const Constants& c, Vector<real> gravityNow, Vector<R> x) {
     const Vector<R> gravity{gravityNow.x, gravityNow.y, gravityNow.z}, center{c.center.x, c.center.y, c.center.z};
     return subtractScaled(gravity, R(c.centralPull), x - center);

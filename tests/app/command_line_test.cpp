@@ -140,7 +140,7 @@ TEST_F(CommandLine, ProbesAreColumnsInEveryFormat) {
     ASSERT_EQ(outcome.code, 0) << outcome.text;
     const std::string csv = slurp(folder_ / "run.csv");
     const std::string header = csv.substr(0, csv.find('\n'));
-    EXPECT_NE(header.find("max_speed [m/s],evaluations,wall.pressure [Pa],wall.density [kg/m^3],wall.velocity_x [m/s],"), std::string::npos) << header;
+    EXPECT_NE(header.find("max_speed [m/s],evaluations,wall.pressure [Pa],wall.density [kg/m³],wall.velocity_x [m/s],"), std::string::npos) << header;
     EXPECT_NE(header.find("gauge.height [m],sort [ms]"), std::string::npos) << header;
     const Json series = parseJson(slurp(folder_ / "run.json"), "series");
     const hdf5::Handle file = hdf5::openFile((folder_ / "run.h5").string());

@@ -26,7 +26,7 @@ ImGuiSliderFlags scaleOf(const Knob& knob) {
 // What 0 stands for is shown behind it.
 std::string formatOf(const Knob& knob, float value, const std::string& inForce) {
     std::string format = "%.4g";
-    if (*knob.unit) format.append(" ").append(shownUnit(knob.unit));
+    if (*knob.unit) format.append(" ").append(knob.unit);
     if (value == 0 && !inForce.empty()) format = "0: " + inForce;
     return format;
 }
@@ -94,13 +94,6 @@ bool backButton() {
 
 }  // namespace
 
-std::string shownUnit(std::string unit) {
-    for (const auto& [plain, raised] : {std::pair{"^2", "²"}, std::pair{"^3", "³"}})
-        if (const size_t at = unit.find(plain); at != std::string::npos)
-            unit.replace(at, 2, raised);
-    return unit;
-}
-
 bool editKnobs(Scene& scene, const Scene& loaded, const std::string& group,
                const InForce& inForce) {
     bool changed = false;
@@ -110,7 +103,7 @@ bool editKnobs(Scene& scene, const Scene& loaded, const std::string& group,
         [&](const std::string& path, auto& value, const auto& first, const Knob& knob) {
             if (path.substr(0, path.rfind('.')) != group) return;
             ImGui::PushID(path.c_str());
-            const std::string idle = whyIdle(scene, path), unit = shownUnit(knob.unit);
+            const std::string idle = whyIdle(scene, path), unit = knob.unit;
             const bool differs = !(value == first);
             const std::string tip =
                 fmt::format("{}\n{}{}{}{}", knob.help, path, unit.empty() ? "" : ", ", unit,

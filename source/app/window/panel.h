@@ -31,7 +31,5 @@ using InForce = std::function<std::string(const std::string& path)>;
 // A widget for each live knob of a group ("view.camera", "fluid"), marked where it differs from
 // what was loaded, and greyed where it has no effect; true when one was changed.
 bool editKnobs(Scene&, const Scene& loaded, const std::string& group, const InForce&);
-// "kg/m^3" -> "kg/m³"
-std::string shownUnit(std::string unit);
 
 }  // namespace spindrift

@@ -122,12 +122,6 @@ TEST(Escape, ClosesOneThingAfterTheOther) {
     }
 }
 
-TEST(Units, AreShownAsTheyAreWritten) {
-    EXPECT_EQ(shownUnit("kg/m^3"), "kg/m³");
-    EXPECT_EQ(shownUnit("m/s^2"), "m/s²");
-    EXPECT_EQ(shownUnit("Pa s"), "Pa s");
-}
-
 TEST(Curves, AreSavedWithUnits) {
     History history;
     Measurement m;

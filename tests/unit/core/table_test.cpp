@@ -128,6 +128,9 @@ TEST(Units, FactorsOfEverySpelling) {
         {"g/mL", "kg/m^3", 1e3},
         {"kg/l", "kg/m^3", 1e3},
         {"KG/M^3", "kg/m^3", 1},
+        {"KG/M3", "kg/m³", 1},
+        {"kg/m^3", "kg/m³", 1},
+        {"g/cm^3", "kg/m³", 1e3},
         {"t/m^3", "kg/m^3", 1e3},
         {"mg/mm^3", "kg/m^3", 1e3},
         {"hPa", "Pa", 1e2},
@@ -152,7 +155,7 @@ TEST(Units, FactorsOfEverySpelling) {
         ASSERT_TRUE(found) << unit << " to " << to;
         EXPECT_NEAR(*found / factor, 1, 1e-14) << unit << " to " << to;
     }
-    const std::string goals[] = {"m", "m/s", "kg/m^3", "Pa", "s", "degrees", "degrees/s"};
+    const std::string goals[] = {"m", "m/s", "kg/m³", "Pa", "s", "degrees", "degrees/s"};
     for (const std::string& to : goals) {
         EXPECT_EQ(unitFactor(to, to), 1.0);
         for (const char* wrong :

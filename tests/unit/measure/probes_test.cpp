@@ -50,9 +50,9 @@ TEST(Probes, ColumnsHaveNamesAndUnits) {
     std::string all;
     const Probes probes(scene);
     for (const Column& c : probes.columns()) all += c.name + "|" + c.unit + " ";
-    EXPECT_EQ(all, "a.pressure|Pa a.density|kg/m^3 a.velocity_x|m/s a.velocity_y|m/s a.velocity_z|m/s "
-                   "b[0].pressure|Pa b[0].density|kg/m^3 b[0].velocity_x|m/s b[0].velocity_y|m/s b[0].velocity_z|m/s "
-                   "b[1].pressure|Pa b[1].density|kg/m^3 b[1].velocity_x|m/s b[1].velocity_y|m/s b[1].velocity_z|m/s "
+    EXPECT_EQ(all, "a.pressure|Pa a.density|kg/m³ a.velocity_x|m/s a.velocity_y|m/s a.velocity_z|m/s "
+                   "b[0].pressure|Pa b[0].density|kg/m³ b[0].velocity_x|m/s b[0].velocity_y|m/s b[0].velocity_z|m/s "
+                   "b[1].pressure|Pa b[1].density|kg/m³ b[1].velocity_x|m/s b[1].velocity_y|m/s b[1].velocity_z|m/s "
                    "c.height|m d.front|m ");
     EXPECT_FALSE(Probes(Scene{}).any());
     EXPECT_THROW(Probes(scene).column("e.pressure"), Error);

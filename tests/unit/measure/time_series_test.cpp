@@ -40,6 +40,21 @@ TEST(TimeSeries, ForgetsWhatARunHasGoneBackBefore) {
     EXPECT_EQ(series.dropAfter(0), 1u);
 }
 
+TEST(TimeSeries, GoesOnHoweverUnitsWereSpelt) {
+    const auto goOn = [](const char* unit) {
+        TimeSeries series({}, {});
+        series.goOn({}, {"old.csv", {{"time", "s"}, {"step", ""}, {"mean_density", unit}}, {{0, 0, 998}}});
+        return linesOf(series.csv());
+    };
+    for (const char* same : {"kg/m^3", "kg/m³", "kg m-3"}) {
+        const auto lines = goOn(same);
+        ASSERT_EQ(lines.size(), 2u) << same;
+        EXPECT_NE(lines[0].find("mean_density [kg/m³]"), std::string::npos) << lines[0];
+        EXPECT_NE(lines[1].find(",998"), std::string::npos) << lines[1];
+    }
+    for (const char* other : {"g/cm^3", "Pa", ""}) EXPECT_THROW(goOn(other), Error) << other;
+}
+
 TEST(TimeSeries, CsvHasUnitsAndEqualRows) {
     const auto lines = linesOf(example().csv());
     ASSERT_EQ(lines.size(), 3u);

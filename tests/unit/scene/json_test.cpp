@@ -77,7 +77,7 @@ TEST(ReadScene, NamesPlaceAndRemedyOfEachMistake) {
         {R"({"version": 2, "simulation": {"spacing": 0}})",
          "simulation.spacing: 0 is out of range, allowed: 1e-07 to 10000 m"},
         {R"({"version": 2, "simulation": {"gravity": -9.8}})",
-         "simulation.gravity: expected three numbers [x, y, z] in m/s^2, found -9.8"},
+         "simulation.gravity: expected three numbers [x, y, z] in m/s², found -9.8"},
         {R"({"version": 2, "simulation": {"gravity": [0, -981, 0]}})",
          "[0,-981,0] is out of range"},
         {R"({"version": 2, "simulation": {"kernel": "wendland"}})",

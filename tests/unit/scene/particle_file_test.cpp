@@ -106,7 +106,7 @@ TEST_F(ParticleFiles, UnitsOfTheHeaderAreHonouredOrRefused) {
     EXPECT_NEAR(t.densities[0], 1000, 1e-9);
     EXPECT_EQ(t.pressures[0], 2e5);
     expectComplaint("x,y,z,rho [lumps]\n1,2,3,1\n",
-                    "column rho: \"lumps\" is no unit of it that is known; use kg/m^3, g/cm^3");
+                    "column rho: \"lumps\" is no unit of it that is known; use kg/m³, g/cm³");
     expectComplaint("x,y,z,p [mm]\n1,2,3,1\n",
                     "column p: \"mm\" is no unit of it that is known; use Pa, hPa");
     const std::string path = (folder / "u.h5").string();
@@ -277,7 +277,7 @@ TEST_F(ParticleFiles, DoubledParticlesAreCountedAndPlaced) {
 TEST_F(ParticleFiles, DensitiesInAnotherUnitAreRefused) {
     const std::string row = "\n-0.5,2.5,3.5,1\n";
     const std::string said = refusalOf(sceneOf(write("x,y,z,rho" + row), Formulation::DeltaSph));
-    EXPECT_NE(said.find("rho is 1 to 1 kg/m^3, and 1000 at rest; name its unit in the header"),
+    EXPECT_NE(said.find("rho is 1 to 1 kg/m³, and 1000 at rest; name its unit in the header"),
               std::string::npos)
         << said;
     EXPECT_EQ(refusalOf(sceneOf(write("x,y,z,rho [g/cm^3]" + row), Formulation::DeltaSph)), "");

@@ -47,6 +47,13 @@ int memberKnobs() {
     return int(names.size());
 }
 
+TEST(Schema, UnitsHaveOneSpelling) {
+    const Scene scene;
+    visitKnobs(scene, [&](const std::string& path, const auto&, const Knob& knob) {
+        EXPECT_EQ(std::string(knob.unit).find('^'), std::string::npos) << path;
+    });
+}
+
 TEST(Schema, EveryFieldOfASceneHasItsLine) {
     Scene scene;
     scene.fluid.bodies.clear();
