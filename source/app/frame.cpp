@@ -16,7 +16,7 @@ namespace {
 
 Vec3 domainSize(const Scene& scene) { return scene.domain.max - scene.domain.min; }
 
-// A fluid's name and colour by its density, kg/m^3, and viscosity, Pa s.
+// A fluid's name and colour by its density, kg/m³, and viscosity, Pa s.
 struct Look {
     const char* name;
     std::array<uint8_t, 3> color;
@@ -68,7 +68,7 @@ Quantity quantity(ColorBy by) {
 OrbitCamera cameraOf(const Scene& scene, float aspect) {
     const Camera& c = scene.view.camera;
     const Vec3 size = domainSize(scene);
-    OrbitCamera camera{0.5f * size, c.yaw, c.pitch, c.distance, c.fieldOfView};
+    OrbitCamera camera{0.5f * size, c.yaw, c.pitch, c.distance, c.fieldOfView, upward(scene)};
     if (c.distance <= 0) camera.distance = fitDistance(camera, size, aspect);
     if (!c.automaticTarget) camera.target = c.target - scene.domain.min;
     return camera;

@@ -8,12 +8,25 @@ namespace {
 constexpr float degree = 3.14159265f / 180;
 }
 
+Vec3 OrbitCamera::turned(Vec3 v) const {
+    const Vec3 u = upward;
+    if (u.z != 0) return {v.x, -u.z * v.z, u.z * v.y};
+    return {u.y * v.x + u.x * v.y, u.y * v.y - u.x * v.x, v.z};
+}
+Vec3 OrbitCamera::upright(Vec3 v) const {
+    const Vec3 u = upward;
+    if (u.z != 0) return {v.x, u.z * v.z, -u.z * v.y};
+    return {u.y * v.x - u.x * v.y, u.y * v.y + u.x * v.x, v.z};
+}
+
 Vec3 OrbitCamera::forward() const {
     const float cosPitch = std::cos(pitch * degree);
-    return {-cosPitch * std::sin(yaw * degree), -std::sin(pitch * degree),
-            -cosPitch * std::cos(yaw * degree)};
+    return turned({-cosPitch * std::sin(yaw * degree), -std::sin(pitch * degree),
+                   -cosPitch * std::cos(yaw * degree)});
 }
-Vec3 OrbitCamera::right() const { return {std::cos(yaw * degree), 0, -std::sin(yaw * degree)}; }
+Vec3 OrbitCamera::right() const {
+    return turned({std::cos(yaw * degree), 0, -std::sin(yaw * degree)});
+}
 Vec3 OrbitCamera::up() const { return cross(right(), forward()); }
 Vec3 OrbitCamera::eye() const { return target - distance * forward(); }
 

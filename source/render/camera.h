@@ -1,5 +1,5 @@
 #pragma once
-// A camera that orbits a target. Lengths in m, angles in degrees; y is up.
+// A camera that orbits a target. Lengths in m, angles in degrees.
 #include "render/matrix.h"
 
 namespace spindrift {
@@ -13,6 +13,12 @@ struct OrbitCamera {
     float yaw = 35, pitch = 20;
     float distance = 3;
     float fieldOfView = 40;  // vertical
+    Vec3 upward{0, 1, 0};    // the axis, or its opposite, that is up
+
+    // From the axes in which y is up and a camera of yaw and pitch 0 looks along -z to the world's,
+    // and back: turned about z, or about x where z is up, so that two dimensions are seen face on.
+    Vec3 turned(Vec3) const;
+    Vec3 upright(Vec3) const;
 
     Vec3 eye() const;
     Vec3 forward() const;  // unit vectors of the picture: into it, to its right, up

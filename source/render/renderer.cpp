@@ -16,7 +16,9 @@ using Four = std::array<float, 4>;
 // std140 twin of the block in shaders/frame.glsl.
 struct FrameBlock {
     Mat4 view, projection, viewBefore;  // viewBefore: of the picture before
-    Four eye, right, up, forward;  // of the picture; right and up reach its edges at distance 1
+    // Of the picture; right and up reach its edges at distance 1. Like the domain's size they are
+    // given where y is up and the ground's corner is 0, whatever is up in the world.
+    Four eye, right, up, forward;
     Four sky;                      // the world's up in the camera's axes
     Four picture;                  // width, height, samples, line width in px
     Four domain;                   // size in m, step of the ground's grid
@@ -29,6 +31,20 @@ struct Segment {
 };
 
 constexpr float degree = 3.14159265f / 180;
+
+// The same camera and domain where y is up and the domain's lowest corner is 0.
+struct Upright {
+    OrbitCamera camera;
+    Vec3 size;
+    Upright(const OrbitCamera& world, Vec3 worldSize) : camera(world), size(world.upright(worldSize)) {
+        camera.target = world.upright(world.target);
+        camera.upward = {0, 1, 0};
+        for (int k = 0; k < 3; ++k) {
+            camera.target[k] -= std::min(size[k], 0.0f);
+            size[k] = std::abs(size[k]);
+        }
+    }
+};
 
 Four pack(Vec3 v, float w = 0) { return {v.x, v.y, v.z, w}; }
 
@@ -133,6 +149,7 @@ void Renderer::draw(const VertexBuffer& vertices, const DrawSettings& settings) 
 
 void Renderer::uploadFrame(const DrawSettings& s) {
     const OrbitCamera& camera = s.camera;
+    const Upright upright(camera, s.domainSize);
     const float aspect = float(width()) / float(height());
     const float tangent = std::tan(0.5f * camera.fieldOfView * degree);
     const float span = s.rangeMax - s.rangeMin;
@@ -140,13 +157,13 @@ void Renderer::uploadFrame(const DrawSettings& s) {
         camera.view(),
         camera.projection(aspect),
         camera_.view(),
-        pack(camera.eye()),
-        pack(tangent * aspect * camera.right()),
-        pack(tangent * camera.up()),
-        pack(camera.forward()),
-        {0, camera.up().y, -camera.forward().y, 0},
+        pack(upright.camera.eye()),
+        pack(tangent * aspect * upright.camera.right()),
+        pack(tangent * upright.camera.up()),
+        pack(upright.camera.forward()),
+        {0, upright.camera.up().y, -upright.camera.forward().y, 0},
         {float(width()), float(height()), float(target_.samples()), lineWidth(height())},
-        pack(s.domainSize, s.ground ? gridStep(s.domainSize) : 0),
+        pack(upright.size, s.ground ? gridStep(upright.size) : 0),
         {0.5f * s.diameter, 0.5f * s.minimumPixels, 0.5f * float(height()) / tangent,
          float(s.fluidCount)},
         {s.rangeMin, span > 0 ? 1 / span : 0,

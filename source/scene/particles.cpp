@@ -333,6 +333,31 @@ bool carriesDensity(const Scene& scene) {
     return scene.simulation.formulation == Formulation::DeltaSph || shiftsParticles(scene);
 }
 
+namespace {
+
+// Up is what pictures show upright: a flow that gravity drives along a periodic axis lies level.
+Up upAgainstGravity(const Scene& scene) {
+    const Vec3 g = scene.simulation.gravity;
+    int axis = 1;
+    for (int k = 0; k < scene.simulation.dimensions; ++k)
+        if (std::abs(g[k]) > std::abs(g[axis])) axis = k;
+    if (g[axis] == 0 || scene.domain.periodic(axis)) return Up::Y;
+    constexpr Up Against[] = {Up::X, Up::Y, Up::Z}, Along[] = {Up::MinusX, Up::MinusY, Up::MinusZ};
+    return g[axis] < 0 ? Against[axis] : Along[axis];
+}
+
+}  // namespace
+
+Up upOf(const Scene& scene) {
+    return scene.view.up == Up::Auto ? upAgainstGravity(scene) : scene.view.up;
+}
+
+Vec3 upward(const Scene& scene) {
+    constexpr Vec3 Axes[] = {{0, 1, 0}, {1, 0, 0},  {0, 1, 0}, {0, 0, 1},
+                             {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
+    return Axes[size_t(upOf(scene))];
+}
+
 float restDensity(const Scene& scene, const Body& body) { return body.restDensity > 0 ? body.restDensity : scene.fluid.restDensity; }
 float viscosity(const Scene& scene, const Body& body) { return body.viscosity >= 0 ? body.viscosity : scene.fluid.viscosity; }
 bool isMixture(const Scene& scene) {

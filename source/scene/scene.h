@@ -21,6 +21,7 @@ enum class TimeMode { Fixed, Cfl, Local };
 enum class Integrator { SymplecticEuler, VelocityVerlet, PredictorCorrector, Split };
 enum class Shape { Block, Sphere, Cylinder, Wedge, Plane, Mesh, File };
 enum class Axis { X, Y, Z };
+enum class Up { Auto, X, Y, Z, MinusX, MinusY, MinusZ };
 enum class ColorBy { Plain, Velocity, Pressure, Density, Acceleration, Id, Fluid, Surface };
 enum class Field { Uniform, TaylorGreen, Stretching, Rotation, Shear, SoundWave };
 enum class StartPlaces { Lattice, Relaxed };
@@ -229,6 +230,7 @@ struct View {
     bool showWalls = false;                     // draws boundary particles
     bool solidParticles = false;                // draws particles of solids instead of their shapes
     bool showOutline = true, showGround = true;
+    Up up = Up::Auto;                           // the direction that is up in pictures
     float particleScale = 1;                    // drawn diameter / spacing
     float speed = 1;                            // simulated / wall time that the window aims at
     Stirrer stir;
@@ -296,6 +298,10 @@ float viscosity(const Scene&, const Body&);
 bool isMixture(const Scene&);
 // The most of all fluids, Pa s.
 float largestViscosity(const Scene&);
+// What is up in pictures: view.up, or in place of auto against the largest part of gravity, and y
+// where there is none or it drives a flow along a periodic axis. As a unit vector:
+Up upOf(const Scene&);
+Vec3 upward(const Scene&);
 // Whether particles move a little beside the fluid, to stay evenly spread.
 bool shiftsParticles(const Scene&);
 

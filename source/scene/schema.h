@@ -37,6 +37,9 @@ constexpr auto enumNames(Integrator) {
 }
 constexpr auto enumNames(Shape) { return std::array{"block", "sphere", "cylinder", "wedge", "plane", "mesh", "file"}; }
 constexpr auto enumNames(Axis) { return std::array{"x", "y", "z"}; }
+constexpr auto enumNames(Up) {
+    return std::array{"auto", "x", "y", "z", "-x", "-y", "-z"};
+}
 constexpr auto enumNames(ColorBy) {
     return std::array{"plain", "velocity", "pressure", "density", "acceleration", "id", "fluid", "surface"};
 }
@@ -439,6 +442,10 @@ void visitPicture(S& s, Visitor&& visit) {
     visit("view.show_walls", v.showWalls, Knob{"", 0, 0, "draws the boundary particles"});
     visit("view.show_outline", v.showOutline, Knob{"", 0, 0, "draws the edges of the box"});
     visit("view.show_ground", v.showGround, Knob{"", 0, 0, "draws the ground"});
+    visit("view.up", v.up,
+          Knob{"", 0, 0,
+               "direction that is up in pictures; auto = against gravity as the run begins with it, "
+               "y where there is none or it acts along a periodic axis"});
     visit("view.solid_particles", v.solidParticles,
           Knob{"", 0, 0, "draws the particles of solids instead of their shapes"});
     visit("view.particle_scale", v.particleScale, Knob{"", 0.05f, 5, "drawn diameter / spacing"});

@@ -58,6 +58,7 @@ void Player::begin(Loaded loaded, bool again) {
     const RunState state = loaded.simulation->state();
     stepper_ = std::make_unique<Stepper>(std::move(loaded.simulation), loaded.start.scene);
     const Camera camera = scene.view.camera;
+    loaded.start.scene.view.up = upOf(loaded.start.scene);   // gravity may change, the view should not
     scene = asked_ = inForce_ = loaded.start.scene;
     if (again) scene.view.camera = camera;
     origin_ = std::move(loaded.start);

@@ -44,6 +44,23 @@ TEST(OrbitCamera, RayOfAPixelMeetsWhatTheMatricesDrawThere) {
     EXPECT_NEAR(length(camera.onPlane(pixel[0], pixel[1], width, height, point) - point), 0, 1e-4);
 }
 
+TEST(OrbitCamera, TurnsTheUprightAxesToWhatIsUp) {
+    const Vec3 v{1, 2, 3};
+    EXPECT_EQ(camera.turned(v), v) << "y is up";
+    for (const Vec3 up :
+         {Vec3{0, 1, 0}, {1, 0, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}) {
+        OrbitCamera tipped = camera;
+        tipped.upward = up;
+        EXPECT_EQ(tipped.turned({0, 1, 0}), up);
+        EXPECT_EQ(tipped.upright(tipped.turned(v)), v);
+        const Vec3 across = tipped.turned({1, 0, 0}), toward = tipped.turned({0, 0, 1});
+        EXPECT_EQ(dot(cross(across, up), toward), 1) << "no mirror";
+        if (up.z == 0) EXPECT_EQ(toward, (Vec3{0, 0, 1})) << "two dimensions are seen face on";
+        EXPECT_GT(dot(tipped.up(), up), 0);
+        EXPECT_GT(dot(tipped.eye() - tipped.target, up), 0) << "a positive pitch looks down";
+    }
+}
+
 TEST(OrbitCamera, ZoomKeepsTheAnchorInPlace) {
     const Vec3 anchor{0.2f, 0.6f, 0.1f};
     OrbitCamera nearer = camera;

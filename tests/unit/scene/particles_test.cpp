@@ -25,6 +25,38 @@ Scene oneBody(Body body) {
     return scene;
 }
 
+TEST(Up, IsAgainstTheLargestPartOfGravityUnlessThatDrivesAFlow) {
+    const auto upIn = [](Vec3 gravity, bool periodicX = false, int dimensions = 3) {
+        Scene scene;
+        scene.simulation.gravity = gravity;
+        scene.simulation.dimensions = dimensions;
+        scene.domain.periodicX = periodicX;
+        return upward(scene);
+    };
+    const Vec3 y{0, 1, 0};
+    for (int k = 0; k < 3; ++k)
+        for (const float g : {-9.81f, 1e-3f}) {
+            Vec3 gravity, up;
+            gravity[k] = g, up[k] = g < 0 ? 1.0f : -1.0f;
+            EXPECT_EQ(upIn(gravity), up);
+            gravity[(k + 1) % 3] = 0.5f * g;
+            EXPECT_EQ(upIn(gravity), up) << "tilted";
+        }
+    EXPECT_EQ(upIn({}), y);
+    EXPECT_EQ(upIn({2, 0, 0}, true), y) << "a channel";
+    EXPECT_EQ(upIn({0, 0, -2}, true), (Vec3{0, 0, 1}));
+    EXPECT_EQ(upIn({0, -1, -2}, false, 2), y) << "z does not matter in two dimensions";
+    EXPECT_EQ(upIn({-1, -1, -1}), y);
+    Scene scene;
+    const Vec3 axes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    for (int k = 0; k < 3; ++k) {
+        scene.view.up = Up(int(Up::X) + k);
+        EXPECT_EQ(upward(scene), axes[k]);
+        scene.view.up = Up(int(Up::MinusX) + k);
+        EXPECT_EQ(upward(scene), -1.0f * axes[k]);
+    }
+}
+
 TEST(Particles, HistoricalCountsAndPlaces) {
     const std::vector<std::tuple<const char*, size_t, size_t>> files = {
         {"1.json", 16 * 22 * 16, 14408},
