@@ -44,6 +44,19 @@ template <class Kernel> LatticeSums latticeSums(const Scene& s) {
     return sums;
 }
 
+// sum of w over the points of a lattice that fills a quarter, in three dimensions an eighth, of space,
+// seen from the one in its corner.
+template <class Kernel> double latticeCorner(const Scene& s) {
+    const double ratio = s.simulation.support;
+    const int n = int(ratio) + 1, across = s.simulation.dimensions == 3 ? n : 0;
+    double sum = 0;
+    for (int z = 0; z <= across; ++z)
+        for (int y = 0; y <= n; ++y)
+            for (int x = 0; x <= n; ++x)
+                sum += double(Kernel::w(real(std::sqrt(double(x * x + y * y + z * z)) / ratio)));
+    return sum;
+}
+
 // Fluid on its lattice must have exactly the rest density, in the bulk and in the layer next to a wall: the mass in
 // sums (returned, kg, in two dimensions kg/m) is scaled for the one, the boundary particles' mass for the other.
 template <class Kernel> double calibrateMasses(const Scene& s, const LatticeSums& sums, Constants& c) {
@@ -82,6 +95,7 @@ inline void addRareForces(const Scene& s, double mass, Constants& c) {
     const double R = supportRadius(s), rho0 = s.fluid.restDensity, dx = s.simulation.spacing, pi = 3.14159265358979323846;
     c.surfaceTension = real(2 * s.fluid.surfaceTension / rho0);
     c.normalScale = real(mass / rho0 * MeanKernel::gradient(d) * MeanKernel::norm(d) / std::pow(R, d + 2));
+    c.leastCompany = real(0.8 * latticeCorner<MeanKernel>(s));
     c.leastNormal = real(0.15 / R);   // a tenth of that of a flat surface
     const double mean = mass * MeanKernel::norm(d) / std::pow(R, d);
     c.velocityTransfer = real(s.fluid.velocityTransfer * mean / 2 / c.gradientScale);

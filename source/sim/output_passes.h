@@ -19,7 +19,7 @@ struct AccelerationValue { HD static real of(const Particles& p, int i) { return
 struct DensityValue { HD static real of(const Particles& p, int i) { return densityOf(p, i); } };
 struct PressureValue { HD static real of(const Particles& p, int i) { return pressureOf(p, i); } };
 struct FluidValue { HD static real of(const Particles& p, int i) { return massRatio(p, i); } };
-struct SurfaceValue { HD static real of(const Particles& p, int i) { return load(p.normalLength, i); } };   // after TagSurface
+struct SurfaceValue { HD static real of(const Particles& p, int i) { return load(p.normalLength, i); } };   // after LeaveOutSpray
 struct IdValue { HD static real of(const Particles& p, int i) { return real(p.id[i]); } };
 
 struct ValueRange {

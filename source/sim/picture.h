@@ -51,6 +51,7 @@ template <class Device> Range SimulationOn<Device>::writeSurface(Vertex* out) {
     addBuffers();
     (this->*pairPass<ComputeNormals>())();
     onFluid<TagSurface>();
+    (this->*pairPass<LeaveOutSpray>())();
     return write<SurfaceValue>(fluid_.view(), out);
 }
 

@@ -42,14 +42,45 @@ struct ComputeNormals {
     HD void finish(Group i) const { finish(i, load(v.fluid.position, i), load(field(), i)); }
 };
 
-// For the eye: 1 where the colour's gradient is more than half of what it is at a flat surface, otherwise 0.
+// For the eye: 1 where the colour's gradient is more than half of what it is at a flat surface,
+// otherwise 0. In place of the normal, for LeaveOutSpray.
 struct TagSurface {
     using Index = Quad;
     View v;
     HD void operator()(Quad i) const {
         using R = Real<Quad>;
-        store(v.fluid.normalLength, i, select(load(v.fluid.normalLength, i) > R(real(0.75) / v.c.support), R(1), R(0)));
+        const R steep = select(load(v.fluid.normalLength, i) > R(real(0.75) / v.c.support), R(1), R(0));
+        store(v.fluid.normal, i, Vector<R>{steep, R(0), R(0)});
     }
+};
+
+// A surface bounds fluid: who has less company than four fifths of what a corner of a block of fluid
+// has, walls not counted, is spray. Single drops and the first few that meet have one-sided
+// surroundings too, at walls above all.
+struct LeaveOutSpray {
+    using Kernel = MeanKernel;
+    using Index = Group;
+    using R = Real<Group>;
+    View v;
+    HD void operator()(Group i) const {
+        R sum = 0;
+        forNeighbours<lists>(v, v.fluidNearFluid, i, load(v.fluid.position, i),
+                             [&](const auto& p, Four) LANE_CALL { sum += Kernel::w(p.q); });
+        finish(i, total(sum));
+    }
+    HD void finish(Group i, R company) const {
+        const R tag = load(v.fluid.normal, i).x;
+        store(v.fluid.normalLength, i, select(company > R(v.c.leastCompany), tag, R(0)));
+    }
+    // For lists with each pair once (PairSums).
+    static constexpr Lists lists = Lists::Pruned;
+    static constexpr uint8_t dueFrom = NotDue;
+    static constexpr bool opposite = false;
+    struct Nothing {};
+    HD ScalarField field() const { return v.fluid.normalLength; }
+    template <class I> HD Nothing state(I) const { return {}; }
+    HD R of(const Pair<R>& p, Nothing, Nothing) const { return Kernel::w(p.q); }
+    HD void finish(Group i) const { finish(i, load(field(), i)); }
 };
 
 // a_i += 2 sigma / rho0 kappa n. Twice, because half of the colour's gradient lies in the air, where nobody is to be pulled. The curvature is that of

@@ -126,6 +126,7 @@ struct Constants {
     real classicViscosity;                        // nu m / (rho0 pi R^5) in units of gradientScale
     real surfaceTension;                          // 2 sigma / rho0, m³/s^2
     real normalScale;                             // m gradientNorm / (rho0 R^5) of MeanKernel
+    real leastCompany;                            // sum of MeanKernel::w, below which there is but spray
     real leastNormal;                             // 1/m: shorter ones belong to no surface
     real velocityTransfer;                        // rate kernelScale / 2 in units of gradientScale
     real buoyancy;                                // b kernelScale / rho0^2 in units of gradientScale

@@ -225,5 +225,44 @@ TEST(Surface, IsWhereTheColourEnds) {
         }
 }
 
+// Beside a block of fluid, whose corners and edges belong to its surface: drops of one, two and three
+// particles, in the air, at a wall and in a corner of the box.
+TEST(Surface, IsNotWhatFliesAround) {
+    for (const char* formulation : {"wcsph", "delta_sph"})
+        for (const int dimensions : {2, 3})
+            for (const Precision precision : {Precision::Float, Precision::Double}) {
+                Scene scene;
+                scene.compute.backend = Backend::Cpu, scene.compute.precision = precision;
+                scene.simulation.dimensions = dimensions;
+                scene.simulation.spacing = 0.05f;
+                setKnob(scene, std::string("simulation.formulation=") + formulation);
+                scene.domain.max = {1, 1, 1};
+                const float deep = dimensions == 2 ? 1 : 0.05f, block = dimensions == 2 ? 1 : 0.5f;
+                scene.fluid.bodies = {Body{{.max{0.5f, 0.5f, block}}}};
+                const int drops = dimensions == 2 ? 2 : 3;
+                for (int n = 1; n <= drops; ++n)
+                    for (const Vec3 at : {Vec3{0.75f, 0.2f * float(n), 0.5f}, {0, 0.6f + 0.1f * float(n), 0.5f},
+                                          {1 - 0.05f * float(n), 1 - 0.2f * float(n), 0}}) {
+                        const Vec3 low{at.x, at.y, dimensions == 2 ? 0 : at.z};
+                        scene.fluid.bodies.push_back(
+                            Body{{.min = low, .max = low + Vec3{0.05f * float(n), 0.05f, deep}}});
+                    }
+                auto simulation = makeSimulation(scene);
+                simulation->step(1);
+                std::vector<Vertex> vertices(size_t(simulation->fluidCount()));
+                simulation->writeVertices({vertices.data()}, ColorBy::Surface, 0);
+                int spray = 0, edges = 0;
+                for (const Vertex& v : vertices) {
+                    const bool inBlock = v.x < 0.5f && v.y < 0.5f && (dimensions == 2 || v.z < 0.5f);
+                    const bool free = inBlock && (v.x > 0.45f || v.y > 0.45f);
+                    if (!inBlock) { EXPECT_EQ(v.value, 0) << "drop at " << v.x << " " << v.y << " " << v.z; }
+                    if (free) { EXPECT_EQ(v.value, 1) << v.x << " " << v.y << " " << v.z; }
+                    spray += !inBlock, edges += free;
+                }
+                EXPECT_EQ(spray, 3 * drops * (drops + 1) / 2);
+                EXPECT_GT(edges, 15);
+            }
+}
+
 }  // namespace
 }  // namespace spindrift
