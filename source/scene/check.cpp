@@ -236,6 +236,7 @@ void checkDensities(const std::string& body, const std::string& file, const Part
                     double rest) {
     if (table.densities.empty()) return;
     const auto [least, most] = std::minmax_element(table.densities.begin(), table.densities.end());
+    if (*most == 0) return;   // none is known
     if (*most < 0.01 * rest || *least > 100 * rest)
         refuse(body, fmt::format("{}: rho is {:.4g} to {:.4g} kg/m³, and {:.4g} at rest; name its "
                                  "unit in the header, as rho [g/cm³], or set "

@@ -26,7 +26,8 @@ using Values = std::array<std::vector<double>, Columns>;   // of each column, em
     throw Error(Exit::Scene, fmt::format("{}: {}", path, what));
 }
 
-// Which columns there are must make sense together, and each density be one.
+// Which columns there are must make sense together. A density of 0 says nothing: lone particles of the
+// classic formulation, which don't count themselves, have it.
 ParticleTable tableOf(const std::string& path, Values v, std::vector<int> lines) {
     for (size_t k = 0; k < 3; ++k)
         if (v[k].empty()) refuse(path, fmt::format("has no particles, or no column {}; it needs x, y, z, and may have vx, vy, vz, rho, p", Names[k]));
@@ -43,8 +44,8 @@ ParticleTable tableOf(const std::string& path, Values v, std::vector<int> lines)
         table.velocities.push_back(v[3].empty() ? Vec3d{} : Vec3d{v[3][i], v[4][i], v[5][i]});
         for (size_t k = 0; k < Columns; ++k)
             if (!v[k].empty() && !std::isfinite(v[k][i])) complaints.push_back(fmt::format("{}: {} is no number", table.nameOf(i), Names[k]));
-        if (!v[Rho].empty() && v[Rho][i] <= 0)
-            complaints.push_back(fmt::format("{}: rho = {:g} kg/m^3 is not above 0", table.nameOf(i), v[Rho][i]));
+        if (!v[Rho].empty() && v[Rho][i] < 0)
+            complaints.push_back(fmt::format("{}: rho = {:g} kg/m³ is below 0", table.nameOf(i), v[Rho][i]));
     }
     refuseAny(path, complaints);
     table.densities = std::move(v[Rho]), table.pressures = std::move(v[P]);

@@ -8,7 +8,7 @@
 
 namespace spindrift {
 
-// One entry a particle, SI units, world coordinates. Densities and pressures are empty where the table has none.
+// One entry a particle, SI units, world coordinates. Densities and pressures are empty where the table has none, a density of 0 is unknown.
 struct ParticleTable {
     std::vector<Vec3d> positions, velocities;
     std::vector<double> densities, pressures;
@@ -19,7 +19,7 @@ struct ParticleTable {
 
 // CSV: a header line names the columns x, y, z, vx, vy, vz, rho, p in any order, rho and p may be missing, and the velocities all three, which
 // are 0 then (core/table.h). HDF5: datasets of one dimension with these names, others are none of our business. Throws Error (Scene), one line
-// that names the file and its first bad lines: what is no finite number, too many or too few values, a density that is not positive.
+// that names the file and its first bad lines: what is no finite number, too many or too few values, a density below 0.
 ParticleTable readParticles(const std::string& path);
 
 // How many there are, without reading them all. Throws Error (Scene) when the file can't be read.

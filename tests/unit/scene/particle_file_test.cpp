@@ -3,6 +3,7 @@
 
 #include "core/error.h"
 #include "core/hdf5_file.h"
+#include "measure/save_particles.h"
 #include "scene/check.h"
 #include "scene/json.h"
 #include "sim/simulation.h"
@@ -127,7 +128,7 @@ TEST_F(ParticleFiles, MistakesAreNamedByLine) {
     expectComplaint("x,y,z\n1,,3\n", "line 2: y is no number");
     expectComplaint("x,y,z\n1,2 3,3\n", "line 2: y is no number");
     expectComplaint("x,y,z\n1,2,nan\n", "line 2: z is no number");
-    expectComplaint("x,y,z,rho\n1,2,3,-4\n", "line 2: rho = -4 kg/m^3 is not above 0");
+    expectComplaint("x,y,z,rho\n1,2,3,-4\n", "line 2: rho = -4 kg/m³ is below 0");
     expectComplaint("x,y,z\n1,2\n1,2,3,4\n1,2,3\n\n1\n1\n", "line 2: 2 values for 3 columns; line 3: 4 values for 3 columns; "
                                                             "line 6: 1 values for 3 columns; and 1 more");
     expectComplaint("x,y,z,vx\n1,2,3,4\n", "has some of the columns vx, vy, vz");
@@ -281,6 +282,33 @@ TEST_F(ParticleFiles, DensitiesInAnotherUnitAreRefused) {
               std::string::npos)
         << said;
     EXPECT_EQ(refusalOf(sceneOf(write("x,y,z,rho [g/cm^3]" + row), Formulation::DeltaSph)), "");
+}
+
+// In the classic formulation nobody counts itself: a drop alone has no density.
+TEST_F(ParticleFiles, LoneParticlesOfTheClassicFormulationAreTaken) {
+    Scene scene;
+    scene.compute.backend = Backend::Cpu;
+    scene.simulation.formulation = Formulation::Classic;
+    scene.simulation.spacing = 0.1f;
+    scene.domain = {{-1, 2, 3}, {0, 3, 4}};
+    scene.fluid.bodies = {Body{{.min{-0.6f, 2.4f, 3.4f}, .max{-0.5f, 2.5f, 3.5f}}}};
+    auto simulation = makeSimulation(scene);
+    simulation->step(1);
+    ASSERT_EQ(simulation->fluidCount(), 1);
+    ASSERT_EQ(simulation->particles()[0].density, 0);
+    for (const char* name : {"lone.csv", "lone.h5"}) {
+        const std::string path = (folder / name).string();
+        saveParticles(path, simulation->particles());
+        for (const Formulation next : {Formulation::Classic, Formulation::Wcsph, Formulation::DeltaSph}) {
+            const Scene again = sceneOf(path, next);
+            EXPECT_EQ(refusalOf(again), "") << name;
+            const auto run = makeSimulation(again);
+            EXPECT_EQ(run->fluidCount(), 1);
+            if (next == Formulation::DeltaSph) {
+                EXPECT_EQ(run->particles()[0].density, 1000) << "at rest, when nobody says otherwise";
+            }
+        }
+    }
 }
 
 // What a run has written begins another one, however violent it was.
