@@ -71,6 +71,22 @@ struct Surface {
         }
         return out;
     }
+    // glTF 2.0 of triangles, whose bytes are in the text itself, and its binary kind; a node that
+    // moves and scales what it holds.
+    std::string textAsGltf(Vec3d translation = {0, 0, 0}, double scale = 1) const {
+        return gltf("data:application/octet-stream;base64," + inBase64(gltfBytes()), translation, scale);
+    }
+    std::string textAsGlb() const {
+        std::string json = gltf("", {0, 0, 0}, 1), bytes = gltfBytes(), out = "glTF";
+        json.resize((json.size() + 3) / 4 * 4, ' '), bytes.resize((bytes.size() + 3) / 4 * 4);
+        const auto add = [&](uint32_t value) {
+            out.append(reinterpret_cast<const char*>(&value), sizeof(value));
+        };
+        add(2), add(uint32_t(12 + 8 + json.size() + 8 + bytes.size()));
+        add(uint32_t(json.size())), out += "JSON" + json;
+        add(uint32_t(bytes.size())), out += std::string("BIN\0", 4) + bytes;
+        return out;
+    }
     // The path of a file with it.
     std::string write(const std::string& path) const {
         std::ofstream(path) << text();
@@ -104,6 +120,54 @@ struct Surface {
         Surface s = *this;
         for (auto& face : s.faces) std::reverse(face.begin(), face.end());
         return s;
+    }
+
+private:
+    std::string gltfBytes() const {
+        std::string out;
+        const auto add = [&](const auto& value) {
+            out.append(reinterpret_cast<const char*>(&value), sizeof(value));
+        };
+        for (const Vec3d& p : vertices) add(toFloat(p));
+        for (const auto& face : faces)
+            for (int v : face) add(uint32_t(v));
+        return out;
+    }
+    std::string gltf(const std::string& uri, Vec3d translation, double scale) const {
+        Vec3d low = vertices[0], high = low;
+        for (const Vec3d& p : vertices)
+            for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]);
+        std::ostringstream out;
+        out.precision(9);
+        const auto vector = [&](const char* name, Vec3d v) {
+            out << "\"" << name << "\":[" << v.x << "," << v.y << "," << v.z << "]";
+        };
+        const size_t places = 12 * vertices.size(), indices = 3 * faces.size();
+        out << R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,)";
+        vector("translation", translation), out << ",", vector("scale", {scale, scale, scale});
+        out << R"(}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],"accessors":[)"
+            << R"({"bufferView":0,"componentType":5126,"type":"VEC3","count":)" << vertices.size() << ",";
+        vector("min", low), out << ",", vector("max", high);
+        out << R"(},{"bufferView":1,"componentType":5125,"type":"SCALAR","count":)" << indices
+            << R"(}],"bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":)" << places
+            << R"(},{"buffer":0,"byteOffset":)" << places << R"(,"byteLength":)" << 4 * indices
+            << R"(}],"buffers":[{"byteLength":)" << places + 4 * indices;
+        if (!uri.empty()) out << R"(,"uri":")" << uri << "\"";
+        out << "}]}";
+        return out.str();
+    }
+    static std::string inBase64(const std::string& bytes) {
+        constexpr const char* Letters =
+            "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+        std::string out;
+        for (size_t i = 0; i < bytes.size(); i += 3) {
+            uint32_t three = 0;
+            for (size_t k = 0; k < 3; ++k)
+                three = three << 8 | (i + k < bytes.size() ? uint8_t(bytes[i + k]) : 0u);
+            for (size_t k = 0; k < 4; ++k)
+                out += i + k > bytes.size() ? '=' : Letters[three >> (18 - 6 * k) & 63];
+        }
+        return out;
     }
 };
 

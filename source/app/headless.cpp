@@ -8,6 +8,7 @@
 #include "core/output_file.h"
 #include "measure/checkpoint.h"
 #include "measure/health.h"
+#include "measure/poured.h"
 #include "measure/probes.h"
 #include "measure/save_particles.h"
 #include "measure/series_files.h"
@@ -114,6 +115,8 @@ public:
             scene_ = onDrawingDevice(std::move(scene_));
         }
         simulation_ = startSimulation(scene_, start.state);
+        if (!quiet && !start.state && hasFluidMeshes())
+            poured_ = pouredIntoMeshes(scene_, simulation_->particles());
         guard_.emplace(*simulation_, scene_);
         now_ = simulation_->measure();
         series_.emplace(output, probes_.columns(), simulation_->plan(), start.state ? &now_ : nullptr);
@@ -200,6 +203,11 @@ private:
 
     void record() {
         for (Recorder& recorder : recorders_) recorder.writeIfDue(now_.time);
+    }
+    bool hasFluidMeshes() const {
+        const std::vector<Body>& bodies = scene_.fluid.bodies;
+        return std::any_of(bodies.begin(), bodies.end(),
+                           [](const Body& b) { return b.shape == Shape::Mesh; });
     }
     bool hasRows() const {
         const Output& output = scene_.output;
@@ -294,6 +302,9 @@ private:
         if (pictures_ && pictures_->frame.copiesVertices())
             fmt::print(out, "vertices       copied through the host, because {} draws\n", glName());
         fmt::print(out, "particles      {}\n", particlesOf(*simulation_));
+        for (const Poured& p : poured_)
+            fmt::print(out, "poured         {:.4g} kg into fluid.bodies[{}], {:.4g} kg by its volume\n",
+                       p.mass, p.body, p.wanted);
         fmt::print(out, "steps          {}, {:.3g} ms each\n", steps_ - first_, ms);
         if (scene_.time.mode == TimeMode::Local && made_ > 0)
             fmt::print(out, "local steps    {:.3g} evaluations of a particle a step\n",
@@ -325,6 +336,7 @@ private:
     std::optional<HealthGuard> guard_;
     std::optional<SeriesFiles> series_;
     std::vector<Recorder> recorders_;
+    std::vector<Poured> poured_;   // at the start
     Measurement now_;
     std::string trouble_;  // why the run stopped early
     int64_t first_ = 0, steps_ = 0, endStep_ = 0;   // of the whole run: before this part of it, until now, at its end or 0

@@ -182,7 +182,7 @@ void checkBody(const Scene& scene, size_t index) {
     if (body.shape == Shape::Plane)
         refuse(bodyPath(index) + ".shape", "a plane is for solids; name another shape");
     if (body.shape == Shape::File) return;   // when it is known to fit into memory
-    if (body.shape == Shape::Mesh) checkMesh(scene, body, bodyPath(index));
+    if (body.shape == Shape::Mesh) checkMesh(scene, body, 1, bodyPath(index));
     const Vec3 half = toFloat(halfExtent(body)), middle = toFloat(convexOf(body, 3).middle);
     const bool cornered = body.shape == Shape::Block || body.shape == Shape::Wedge;
     const Vec3 low = cornered ? body.min : middle - half,
@@ -201,7 +201,10 @@ void checkBody(const Scene& scene, size_t index) {
                    fmt::format("{} m along {} is larger than the domain's {} m; shrink the body or "
                                "enlarge the domain",
                                extent, axis, room));
-        if (low[k] < scene.domain.min[k] - tolerance || high[k] > scene.domain.max[k] + tolerance)
+        const bool within = low[k] >= scene.domain.min[k] - tolerance &&
+                            high[k] <= scene.domain.max[k] + tolerance;
+        if (!within && body.shape == Shape::Mesh) refuseMeshPlace(scene, body, bodyPath(index));
+        if (!within)
             refuse(
                 bodyPath(index),
                 fmt::format("spans {} to {} m along {}, outside the domain's {} to {} m; move it "

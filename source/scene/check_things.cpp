@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace spindrift {
 namespace {
@@ -45,15 +44,20 @@ void checkPlane(const Scene& scene, const Solid& plane, size_t index) {
 
 double longest(Vec3d size) { return std::max({size.x, size.y, size.z}); }
 
-// Files are often in millimetres or inches, and don't say so.
-void requireUnits(const Scene& scene, const Form& form, const std::string& path) {
-    constexpr double MostDomains = 20;
+// Files are often in millimetres or inches, and don't say so. A mesh may be so many domains large:
+// obstacles reach beyond it.
+void requireUnits(const Scene& scene, const Form& form, double mostDomains,
+                  const std::string& path) {
     const double extent = 2 * longest(halfExtent(form)), room = longest(scene.domain.size());
-    if (extent <= MostDomains * room) return;
+    constexpr double Rounding = 1e-5;
+    if (extent <= (mostDomains + Rounding) * room) return;
     constexpr std::pair<double, const char*> Units[] = {
-        {1e-3, "millimetres"}, {0.0254, "inches"}, {0.01, "centimetres"}};
-    const auto unit = std::find_if(std::begin(Units), std::end(Units),
-                                   [&](const auto& u) { return extent * u.first <= 2 * room; });
+        {1e-3, "millimetres"}, {0.01, "centimetres"}, {0.0254, "inches"}};
+    const auto fits = [&](const auto& unit) {
+        const double then = extent * unit.first;
+        return then <= 2 * room && then >= 4 * double(scene.simulation.spacing);
+    };
+    const auto unit = std::find_if(std::begin(Units), std::end(Units), fits);
     const std::string advice = unit == std::end(Units)
                                    ? "lower it"
                                    : fmt::format("if the file is in {}, set it to {:g}",
@@ -62,17 +66,11 @@ void requireUnits(const Scene& scene, const Form& form, const std::string& path)
                                         extent, room, advice));
 }
 
-// What a mesh that lies elsewhere is to be moved by.
-std::string placeAdvice(const Scene& scene, const Form& form) {
-    const Vec3d middle = convexOf(form, 3).middle, half = halfExtent(form), low = middle - half,
-                high = middle + half;
-    const Vec3d offset =
-        toDouble(form.offset) + toDouble(scene.domain.min) + 0.5 * scene.domain.size() - middle;
-    return fmt::format(
-        "lies from ({:.7g}, {:.7g}, {:.7g}) to ({:.7g}, {:.7g}, {:.7g}) m, outside the domain; the "
-        "offset [{:.7g}, {:.7g}, {:.7g}] would put it into "
-        "the domain's middle",
-        low.x, low.y, low.z, high.x, high.y, high.z, offset.x, offset.y, offset.z);
+// As people would write it: to a hundredth of a spacing.
+std::string inShort(const Scene& scene, Vec3d v) {
+    const double digits = std::pow(10, std::ceil(2 - std::log10(double(scene.simulation.spacing))));
+    for (int k = 0; k < 3; ++k) v[k] = std::round(v[k] * digits) / digits + 0.0;   // no -0
+    return fmt::format("{}, {}, {}", v.x, v.y, v.z);
 }
 
 // Springs that hold solids apart would throw them about if they began in each other.
@@ -118,7 +116,7 @@ void checkSolid(const Scene& scene, size_t index) {
         outside |= middle[k] + half[k] < scene.domain.min[k] || middle[k] - half[k] > scene.domain.max[k];
     }
     if (outside && !solid.moves() && solid.shape == Shape::Mesh)
-        refuse(path + ".offset", "the mesh " + placeAdvice(scene, solid));
+        refuseMeshPlace(scene, solid, path);
     if (outside && !solid.moves()) refuse(path, "lies outside the domain and does not move; move it inside");
     if (scene.simulation.dimensions == 2 && solid.shape == Shape::Cylinder && solid.axis != Axis::Z)
         refuse(path + ".axis", "in two dimensions a cylinder is a circle about z; use z");
@@ -145,10 +143,14 @@ void checkObject(const Scene& scene, size_t index) {
     int sides = 0;
     if (o.shape == ObjectShape::Shell) {
         if (flat) refuse(path + ".shape", "a shell has three dimensions; use another shape, or simulation.dimensions 3");
-        try {
-            const auto mesh = readMesh(o.path);
-            low = o.offset + toFloat(double(o.scale) * mesh->low()), high = o.offset + toFloat(double(o.scale) * mesh->high());
-        } catch (const Error& error) { refuse(path + ".path", error.what()); }
+        Form form;
+        form.shape = Shape::Mesh, form.path = o.path, form.scale = o.scale, form.offset = o.offset;
+        checkMesh(scene, form, 1, path);
+        const Vec3d half = halfExtent(form), middle = convexOf(form, 3).middle;
+        low = toFloat(middle - half), high = toFloat(middle + half);
+        for (int k = 0; k < 3; ++k)
+            if (low[k] < scene.domain.min[k] || high[k] > scene.domain.max[k])
+                refuseMeshPlace(scene, form, path);
     } else if (o.shape == ObjectShape::Tube) {
         const float out = o.radius + o.thickness / 2;
         for (int k = 0; k < 3; ++k) {
@@ -191,31 +193,34 @@ void checkApart(const Scene& scene) {
 
 }  // namespace
 
-void checkMesh(const Scene& scene, const Form& form, const std::string& path) {
+void checkMesh(const Scene& scene, const Form& form, double mostDomains, const std::string& path) {
     if (scene.simulation.dimensions == 2)
         refuse(path + ".shape",
                "a mesh has three dimensions; use another shape, or simulation.dimensions 3");
     try {
         readMesh(form.path);
     } catch (const Error& error) { refuse(path + ".path", error.what()); }
-    requireUnits(scene, form, path);
-    const double step =
-        longest({std::abs(form.offset.x), std::abs(form.offset.y), std::abs(form.offset.z)}) *
-        double(std::numeric_limits<float>::epsilon());
-    if (step > 0.05 * double(scene.simulation.spacing))
-        refuse(path + ".offset",
-               fmt::format("is so large that it is rounded to {:.2g} m, too coarse for a "
-                           "simulation.spacing of {} m; move the origin of the file "
-                           "nearer to the mesh",
-                           step, scene.simulation.spacing));
+    requireUnits(scene, form, mostDomains, path);
+}
+
+void refuseMeshPlace(const Scene& scene, const Form& form, const std::string& path) {
+    const Vec3d middle = convexOf(form, 3).middle, half = halfExtent(form),
+                low = toDouble(scene.domain.min), high = toDouble(scene.domain.max);
+    const Vec3d offset = form.offset + 0.5 * (low + high) - middle;
+    refuse(path + ".offset",
+           fmt::format("the mesh lies from ({}) to ({}) m, the domain from ({}) to ({}); [{}] would "
+                       "put it into the domain's middle",
+                       inShort(scene, middle - half), inShort(scene, middle + half),
+                       inShort(scene, low), inShort(scene, high), inShort(scene, offset)));
 }
 
 void checkMeshes(const Scene& scene) {
     for (size_t i = 0; i < scene.solids.size(); ++i) {
+        constexpr double MostDomains = 20;   // ground may go on far beyond the tank
         const Solid& solid = scene.solids[i];
         if (solid.shape != Shape::Mesh) continue;
         const std::string path = fmt::format("solids[{}]", i);
-        checkMesh(scene, solid, path);
+        checkMesh(scene, solid, MostDomains, path);
         try {
             readMesh(solid.path)->fieldSpacing(scene.simulation.spacing / solid.scale);
         } catch (const Error& error) { refuse(path + ".path", error.what()); }

@@ -26,8 +26,10 @@ void requireColumnName(const std::vector<Member>& list, size_t index, const std:
         if (list[other].name == name) refuse(at, fmt::format("\"{}\" is the name of {}[{}] too; give each its own", name, path, other));
 }
 
-// Whether its file is there, a closed surface, and of a size that fits the domain.
-void checkMesh(const Scene&, const Form&, const std::string& path);
+// Whether its file is there, a closed surface, and no larger than so many domains.
+void checkMesh(const Scene&, const Form&, double mostDomains, const std::string& path);
+// A mesh lies elsewhere: says where, and the offset that brings it into the domain.
+[[noreturn]] void refuseMeshPlace(const Scene&, const Form&, const std::string& path);
 // The same of all solids', and that collisions can work with them: before anything else looks at
 // them.
 void checkMeshes(const Scene&);

@@ -37,7 +37,7 @@ Convex convexOf(const Form& form, int dimensions) {
     }
     if (form.shape == Shape::Mesh) {
         c.mesh = readMesh(form.path), c.scale = form.scale;
-        c.middle = toDouble(form.offset) + 0.5 * c.scale * (c.mesh->low() + c.mesh->high());
+        c.middle = form.offset + 0.5 * c.scale * (c.mesh->low() + c.mesh->high());
         for (int k = 0; k < 3; ++k) {
             Vec3d up{0, 0, 0};
             up[k] = 1;

@@ -14,7 +14,7 @@ std::string withUnit(const Knob& knob) {
 
 // What a JSON Schema says of a knob of each type.
 Json typeOf(float, const Knob& k) {
-    return {{"type", "number"}, {"minimum", k.min}, {"maximum", k.max}};
+    return {{"type", "number"}, {"minimum", decimal(k.min)}, {"maximum", decimal(k.max)}};
 }
 Json typeOf(int, const Knob& k) {
     return {{"type", "integer"}, {"minimum", int64_t(k.min)}, {"maximum", int64_t(k.max)}};
@@ -25,6 +25,7 @@ Json listOf(const Knob& k, int least, int most) {
     return {{"type", "array"}, {"items", typeOf(0.0f, k)}, {"minItems", least}, {"maxItems", most}};
 }
 Json typeOf(Vec3, const Knob& k) { return listOf(k, 3, 3); }
+Json typeOf(Vec3d, const Knob& k) { return listOf(k, 3, 3); }
 Json typeOf(const Keyframes&, const Knob& k) { return {{"type", "array"}, {"items", listOf(k, 4, 5)}}; }
 template <class E>
 requires std::is_enum_v<E> Json typeOf(E value, const Knob&) {
@@ -65,7 +66,8 @@ std::string plain(float value) { return fmt::format("{}", value); }
 std::string plain(int value) { return fmt::format("{}", value); }
 std::string plain(bool value) { return value ? "true" : "false"; }
 std::string plain(const std::string& value) { return value.empty() ? "\"\"" : value; }
-std::string plain(Vec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
+template <class T>
+std::string plain(Vec3Of<T> v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
 std::string plain(const Keyframes& keyframes) {
     std::string text;
     for (const Keyframe& k : keyframes) text += fmt::format("[{},{},{}]", k.time, plain(k.offset), k.turn);
@@ -105,6 +107,10 @@ std::string jsonSchema() {
         if constexpr (std::is_enum_v<std::decay_t<decltype(value)>>)
             property["default"] = plain(value);
         else if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Vec3>)
+            property["default"] = {decimal(value.x), decimal(value.y), decimal(value.z)};
+        else if constexpr (std::is_same_v<std::decay_t<decltype(value)>, float>)
+            property["default"] = decimal(value);
+        else if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Vec3d>)
             property["default"] = {value.x, value.y, value.z};
         else if constexpr (!std::is_same_v<std::decay_t<decltype(value)>, Keyframes>)
             property["default"] = value;

@@ -53,14 +53,17 @@ void readScene(Json& root, Scene& scene, const Place& place) {
     readKnobs(root, scene, place);
 }
 
-Json toJson(float value) { return value; }
+Json toJson(float value) { return decimal(value); }
 Json toJson(int value) { return value; }
 Json toJson(bool value) { return value; }
 Json toJson(const std::string& value) { return value; }
-Json toJson(Vec3 v) { return Json::array({v.x, v.y, v.z}); }
+Json toJson(Vec3 v) { return Json::array({decimal(v.x), decimal(v.y), decimal(v.z)}); }
+Json toJson(Vec3d v) { return Json::array({v.x, v.y, v.z}); }
 Json toJson(const Keyframes& keyframes) {
     Json list = Json::array();
-    for (const Keyframe& k : keyframes) list.push_back({k.time, k.offset.x, k.offset.y, k.offset.z, k.turn});
+    for (const Keyframe& k : keyframes)
+        list.push_back({decimal(k.time), decimal(k.offset.x), decimal(k.offset.y),
+                        decimal(k.offset.z), decimal(k.turn)});
     return list;
 }
 template <class E>

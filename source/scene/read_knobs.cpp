@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <iterator>
 #include <set>
 
 namespace spindrift {
@@ -103,6 +104,14 @@ void refuseUnknownIn(const Json& json, const std::string& at, const std::vector<
 
 }  // namespace
 
+double decimal(float value) {
+    char text[64];
+    const auto end = std::to_chars(std::begin(text), std::end(text), value).ptr;
+    double wide = value;
+    std::from_chars(text, end, wide);
+    return wide;
+}
+
 std::string allowedRange(const Knob& knob) {
     const std::string unit = *knob.unit ? fmt::format(" {}", knob.unit) : "";
     return knob.min == knob.max ? fmt::format("{}{}", knob.min, unit)
@@ -150,17 +159,26 @@ void assign(std::string& value, const Json& json, const Knob&, const Place& plac
     value = json.get<std::string>();
 }
 
-void assign(Vec3& value, const Json& json, const Knob& knob, const Place& place,
-            const std::string& path) {
+template <class T>
+static void assignVector(Vec3Of<T>& value, const Json& json, const Knob& knob, const Place& place,
+                         const std::string& path) {
     const bool numbers =
         json.is_array() && json.size() == 3 &&
         std::all_of(json.begin(), json.end(), [](const Json& j) { return j.is_number(); });
     if (!numbers)
         place.fail(path, fmt::format("expected three numbers [x, y, z]{}, found {}", withUnit(knob),
                                      shown(json)));
-    const Vec3 vector{json[0].get<float>(), json[1].get<float>(), json[2].get<float>()};
+    const Vec3Of<T> vector{json[0].get<T>(), json[1].get<T>(), json[2].get<T>()};
     requireRange(vector, json, knob, place, path);
     value = vector;
+}
+void assign(Vec3& value, const Json& json, const Knob& knob, const Place& place,
+            const std::string& path) {
+    assignVector(value, json, knob, place, path);
+}
+void assign(Vec3d& value, const Json& json, const Knob& knob, const Place& place,
+            const std::string& path) {
+    assignVector(value, json, knob, place, path);
 }
 
 void assign(Int3& value, const Json& json, const Knob& knob, const Place& place,

@@ -14,9 +14,10 @@
 
 namespace spindrift {
 
-// Keeps the order of keys; floats are floats, so that 0.02 is written as 0.02.
-using Json = nlohmann::basic_json<nlohmann::ordered_map, std::vector, std::string, bool, int64_t,
-                                  uint64_t, float>;
+// Keeps the order of keys.
+using Json = nlohmann::ordered_json;
+// The shortest decimal number that a float is: 0.02 is written as 0.02.
+double decimal(float);
 
 // "configs/a.json: fluid.viscosity"; `file` may be a name such as "--set".
 struct Place {
@@ -36,7 +37,8 @@ template <class T>
 bool inRange(T value, const Knob& knob) {
     return value >= T(knob.min) && value <= T(knob.max);
 }
-inline bool inRange(Vec3 v, const Knob& knob) {
+template <class T>
+bool inRange(Vec3Of<T> v, const Knob& knob) {
     return inRange(v.x, knob) && inRange(v.y, knob) && inRange(v.z, knob);
 }
 inline bool inRange(Int3 v, const Knob& knob) {
@@ -55,6 +57,7 @@ void assign(int&, const Json&, const Knob&, const Place&, const std::string& pat
 void assign(bool&, const Json&, const Knob&, const Place&, const std::string& path);
 void assign(std::string&, const Json&, const Knob&, const Place&, const std::string& path);
 void assign(Vec3&, const Json&, const Knob&, const Place&, const std::string& path);
+void assign(Vec3d&, const Json&, const Knob&, const Place&, const std::string& path);
 void assign(Int3&, const Json&, const Knob&, const Place&, const std::string& path);
 void assign(Keyframes&, const Json&, const Knob&, const Place&, const std::string& path);
 int enumIndex(const Json&, const std::vector<std::string>& names, const Place&,

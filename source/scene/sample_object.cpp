@@ -187,7 +187,7 @@ void sampleShell(const Scene& scene, int number, ObjectSample& out) {
     std::vector<Mesh::Triangle> triangles = mesh->triangles();
     for (int k = divisionsOf(scene, o, *mesh); k > 0; --k) divide(vertices, triangles);
     Springs springs{out, int(out.size())};
-    for (const Vec3d& x : vertices) addParticle(scene, number, toDouble(o.offset) + double(o.scale) * x, true, out);
+    for (const Vec3d& x : vertices) addParticle(scene, number, o.offset + double(o.scale) * x, true, out);
     const double k = std::numbers::sqrt3 / 4 * double(o.youngsModulus) * o.thickness;
     for (const Mesh::Triangle& t : triangles) {
         const Vec3d a = springs.at(t[0]), b = springs.at(t[1]), c = springs.at(t[2]);
@@ -224,7 +224,7 @@ double countObjectParticles(const Scene& scene) {
 
 Vec3d middleOf(const Object& o) {
     if (o.shape == ObjectShape::Tube) return toDouble(o.center);
-    return o.shape == ObjectShape::Shell ? toDouble(o.offset) : 0.5 * (toDouble(o.min) + toDouble(o.max));
+    return o.shape == ObjectShape::Shell ? o.offset : 0.5 * (toDouble(o.min) + toDouble(o.max));
 }
 
 ObjectRoom::ObjectRoom(const Scene& scene)

@@ -47,7 +47,7 @@ struct Form {
     Vec3 normal{0, 1, 0};                       // to the side where fluid is, of any length
     std::string path{};                         // of a file, beside the scene file when relative
     float scale = 1;                            // m per unit of a mesh's file
-    Vec3 offset{0, 0, 0};                       // m, where the mesh's origin is
+    Vec3d offset{0, 0, 0};                      // m, where the mesh's origin is; files of surveys have theirs far away
 };
 
 // One body of fluid, filled on a lattice, or with the particles of a file as they are.
@@ -92,7 +92,7 @@ struct Object {
     Axis axis = Axis::X;
     std::string path{};                         // of a mesh, beside the scene file when relative
     float scale = 1;                            // m per unit of that
-    Vec3 offset{0, 0, 0};                       // m, of its origin
+    Vec3d offset{0, 0, 0};                      // m, of its origin
     float thickness = 0.01f;                    // m, of a wall: one layer of particles, or more where a sheet or a tube is thicker than a spacing
     float spacing = 0;                          // m, of its particles, 0 = simulation.spacing
     float density = 1000;                       // kg/m³

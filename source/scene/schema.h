@@ -502,7 +502,7 @@ void visitOutput(S& s, Visitor&& visit) {
 }  // namespace schema
 
 // Calls visit(path, value, knob) for every knob of the scene. `visit` is a callable for float, int,
-// bool, std::string, Vec3, Keyframes and every enumeration above; values are references into the scene (const
+// bool, std::string, Vec3, Vec3d, Keyframes and every enumeration above; values are references into the scene (const
 // when it is).
 template <class S, class Visitor>
 requires std::is_same_v<std::remove_const_t<S>, Scene>

@@ -54,7 +54,7 @@ Scene readBytes(const std::string& bytes) {
             const float number = byte(3) % 3 ? knob.min + share * span : knob.min + span * std::pow(10.0f, 8 * share - 8);
             if constexpr (std::is_enum_v<T>) value = T(byte(1) % enumNames(T()).size());
             else if constexpr (std::is_same_v<T, bool>) value = byte(1) % 2 == 1;
-            else if constexpr (std::is_same_v<T, Vec3>) value[byte(3) % 3] = number;
+            else if constexpr (std::is_same_v<T, Vec3> || std::is_same_v<T, Vec3d>) value[byte(3) % 3] = number;
             else if constexpr (std::is_arithmetic_v<T>) value = T(number);
         });
     }

@@ -21,7 +21,8 @@ void change(int& value, const Knob& knob) {
     value = value == int(knob.max) ? int(knob.min) : value + 1;
 }
 void change(bool& value, const Knob&) { value = !value; }
-void change(Vec3& value, const Knob&) { value.x += 0.5f; }
+template <class T>
+void change(Vec3Of<T>& value, const Knob&) { value.x += T(0.5); }
 void change(std::string& value, const Knob&) { value += "x"; }
 void change(Keyframes&, const Knob&) {}
 template <class E>

@@ -1,14 +1,19 @@
 // What solid a file of triangles means, however it was written.
 #include "core/error.h"
 #include "meshes.h"
+#include "scene/check.h"
 #include "scene/convex.h"
+#include "scene/json.h"
 #include "scene/mesh.h"
 #include "scene/particles.h"
+#include "scene/sample_object.h"
 #include "scene/sample_solid.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <random>
+#include <tuple>
 
 namespace spindrift {
 namespace {
@@ -374,6 +379,97 @@ TEST(MeshSolids, ObjKeepsTheCoordinatesOfASurvey) {
     const auto mesh = readMesh(fileOf("survey.obj", text + box.text()));
     EXPECT_NEAR(mesh->weigh().volume, 0.008, 1e-9);
     EXPECT_NEAR(mesh->nearest({500123, 450.08, 649776}).distance, -0.02, 1e-9);
+}
+
+// The same cube in every kind of file.
+TEST(MeshSolids, GltfIsWhatObjIs) {
+    const Surface box =
+        boxSurface({0.25, -0.5, 0.125}, {0.75, 0.25, 0.625}).inTriangles(false);
+    const Vec3d moved{1, 2, -3};
+    const auto obj = readMesh(fileOf("cube.obj", box.text()));
+    const std::tuple<const char*, std::string, Vec3d, double> files[] = {
+        {"cube.gltf", box.textAsGltf(), {0, 0, 0}, 1},
+        {"cube.glb", box.textAsGlb(), {0, 0, 0}, 1},
+        {"moved.gltf", box.textAsGltf(moved, 2), moved, 2}};
+    for (const auto& [name, text, offset, scale] : files) {
+        const auto mesh = readMesh(fileOf(name, text));
+        EXPECT_EQ(mesh->triangles().size(), obj->triangles().size()) << name;
+        EXPECT_NEAR(mesh->weigh().volume, std::pow(scale, 3) * obj->weigh().volume, 1e-6) << name;
+        for (const Vec3d p : {Vec3d{0.5, 0, 0.4}, {0.3, 0.2, 0.2}, {0, 0, 0}, {1, -1, 1}})
+            EXPECT_NEAR(mesh->nearest(offset + scale * p).distance, scale * obj->nearest(p).distance,
+                        1e-6)
+                << name;
+    }
+}
+
+// Coordinates of a national grid, brought into the domain by the offset that the refusal names.
+TEST(MeshSolids, OfASurveyArePlacedByTheirOffset) {
+    Surface box = boxSurface({500122.9, 449.9, 649775.9}, {500123.1, 450.1, 649776.1});
+    std::string text;
+    for (const Vec3d& p : box.vertices)
+        text += fmt::format("v {} {} {}\n", p.x, p.y, p.z);
+    box.vertices.clear();
+    const std::string path = fileOf("grid.obj", text + box.text());
+    const std::string named[] = {"solids", "fluid.bodies", "objects"};
+    for (const std::string& list : named) {
+        Scene scene;
+        scene.simulation.spacing = 0.02f;
+        scene.domain.max = {0.8f, 0.6f, 0.6f};
+        scene.fluid.bodies = {Body{{.max{0.1f, 0.1f, 0.1f}}}};
+        const auto complaint = [&](const std::string& offset) -> std::string {
+            try {
+                setKnob(scene, fmt::format("{}=[{{\"shape\":\"{}\",\"path\":\"{}\",\"offset\":[{}]}}]",
+                                           list, list == "objects" ? "shell" : "mesh", path, offset));
+                checkScene(scene, "a");
+            } catch (const Error& error) { return error.what(); }
+            return "";
+        };
+        const std::string said = complaint("0.3,0.3,0.3");
+        EXPECT_NE(said.find(list + "[0].offset: the mesh lies from (500123.2, 450.2, 649776.2) to "
+                                   "(500123.4, 450.4, 649776.4) m, the domain from (0, 0, 0) to "
+                                   "(0.8, 0.6, 0.6); [-500122.6, -449.7, -649775.7] would put it"),
+                  std::string::npos)
+            << said;
+        EXPECT_EQ(complaint("-500122.6, -449.7, -649775.7"), "");
+        const Scene again = parseScene(writeScene(scene), "again");
+        Vec3d middle{0, 0, 0};
+        if (list == "solids") middle = convexOf(again.solids[0], 3).middle;
+        if (list == "fluid.bodies") middle = convexOf(again.fluid.bodies[0], 3).middle;
+        if (list == "objects") {
+            const ObjectSample sample = sampleObjects(again);
+            for (const Vec3& p : sample.positions)
+                middle = middle + (1 / double(sample.size())) * toDouble(p);
+        }
+        EXPECT_NEAR(length(middle - Vec3d{0.4, 0.3, 0.3}), 0, 1e-6) << list;
+    }
+}
+
+// Obstacles may be larger than the tank; what must be in it may not.
+TEST(MeshSolids, TellThatTheirFileMayBeInMillimetres) {
+    const std::string path = fileOf("part.obj", boxSurface({0, 0, 0}, {200, 150, 100}).text());
+    const std::pair<const char*, const char*> cases[] = {
+        {"fluid.bodies", "mesh"}, {"objects", "shell"}, {"solids", "mesh"}};
+    for (const auto& [list, shape] : cases)
+        for (const float side : {1.0f, 9.0f, 15.0f, 150.0f, 250.0f}) {
+            Scene scene;
+            scene.domain.max = {side, side, side};
+            scene.simulation.spacing = std::max(0.01f * side, 0.02f);
+            scene.fluid.bodies = {Body{{.max{1, 1, 1}}}};
+            std::string said;
+            try {
+                setKnob(scene, fmt::format(R"({}=[{{"shape":"{}","path":"{}"}}])", list, shape, path));
+                checkScene(scene, "a");
+            } catch (const Error& error) { said = error.what(); }
+            const bool solid = std::string(list) == "solids";
+            const bool expected = 200 > (solid ? 20 : 1) * side;
+            const bool units = said.find(fmt::format("{}[0].scale: the mesh is 200 m large, the domain "
+                                                     "{:g} m; ", list, side)) != std::string::npos;
+            EXPECT_EQ(units, expected) << list << " in " << side << ": " << said;
+            if (side == 1) {
+                EXPECT_NE(said.find("if the file is in millimetres, set it to 0.001"), std::string::npos)
+                    << said;
+            }
+        }
 }
 
 // Boxes that overlap, that touch by an edge, and of which one is inside out.

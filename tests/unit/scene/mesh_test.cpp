@@ -283,7 +283,7 @@ Solid solidOf(const std::string& path) {
 
 TEST(Meshes, ArePlacedByScaleAndOffset) {
     Solid solid = solidOf(boxSurface({-100, 0, -100}, {100, 300, 100}).write(testing::TempDir() + "/millimetres.obj"));
-    solid.scale = 0.001f, solid.offset = {0.5f, 0.1f, 0.5f};
+    solid.scale = 0.001f, solid.offset = {0.5, 0.1, 0.5};
     const Convex shape = convexOf(solid, 3);
     EXPECT_NEAR(shape.middle.y, 0.25, 1e-6);
     EXPECT_NEAR(halfExtent(solid).y, 0.15, 1e-6);
@@ -344,9 +344,6 @@ TEST(Meshes, ScenesNameTheirMistakes) {
     const std::string outside = refusal(mesh + R"(, "offset": [5, 0, 0]})");
     EXPECT_NE(outside.find("solids[0].offset: the mesh lies from"), std::string::npos) << outside;
     EXPECT_NE(outside.find("would put it into the domain's middle"), std::string::npos) << outside;
-    EXPECT_NE(refusal(mesh + R"(, "offset": [500000, 0, 0]})")
-                  .find("solids[0].offset: is so large that it is rounded to 0.06 m"),
-              std::string::npos);
     EXPECT_NE(refusal(mesh + "}", R"(fluid.bodies=[{"shape": "mesh", "path": "none.obj"}])")
                   .find("fluid.bodies[0].path: none.obj: can't be read"),
               std::string::npos);

@@ -126,6 +126,9 @@ struct Change {
     void operator()(const std::string&, Vec3& v, const Knob&) const {
         v = v + Vec3{0.1f, 1e-7f, -12.3456789f};
     }
+    void operator()(const std::string&, Vec3d& v, const Knob&) const {
+        v = v + Vec3d{0.1, 1e-17, -500123.45678901234};
+    }
     template <class E>
     requires std::is_enum_v<E>
     void operator()(const std::string& path, E& v, const Knob&) const {
