@@ -124,6 +124,8 @@ public:
         endStep_ = scene_.compute.steps == 0 && output.time == 0 ? first_ + DefaultSteps : scene_.compute.steps;
         addRecorders();
         if (!quiet && !start.said.empty()) fmt::print(stderr, "spindrift: {}\n", start.said);
+        if (const std::string hidden = probes_.hiddenBySolids(scene_, *simulation_); !hidden.empty())
+            fmt::print(stderr, "spindrift: {}\n", hidden);
     }
 
     int run() {

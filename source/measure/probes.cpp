@@ -1,10 +1,14 @@
 #include "measure/probes.h"
 
 #include "core/error.h"
+#include "scene/convex.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace spindrift {
 namespace {
@@ -55,6 +59,64 @@ std::vector<Vec3d> sensor(const Scene& scene, Vec3d at, double radius) {
     return points;
 }
 
+// Of a line; of a gauge, four a spacing along its axis; of a point the sensor's middle.
+std::vector<Vec3d> pointsOf(const Scene& scene, const Probe& probe) {
+    std::vector<Vec3d> points;
+    if (probe.kind == ProbeKind::Point) points = {placed(scene, toDouble(probe.position))};
+    if (probe.kind == ProbeKind::Line) {
+        const Vec3d from = toDouble(probe.from), way = toDouble(probe.to) - from;
+        for (int k = 0; k < probe.count; ++k)
+            points.push_back(placed(scene, from + (double(k) / (probe.count - 1)) * way));
+    }
+    if (probe.kind == ProbeKind::Height) {
+        const int axis = int(probe.axis);
+        const double low = scene.domain.min[axis], high = scene.domain.max[axis];
+        const double fine = 4 / double(scene.simulation.spacing);
+        const int count = std::max(int(std::ceil(fine * (high - low))), 1);
+        for (int i = 0; i <= count; ++i) {
+            Vec3d at = placed(scene, toDouble(probe.position));
+            at[axis] = low + (high - low) * i / count;
+            points.push_back(at);
+        }
+    }
+    return points;
+}
+
+// Solids where they are now.
+class SolidsNow {
+public:
+    SolidsNow(const Scene& scene, std::vector<SolidPose> poses)
+        : scene_(scene), poses_(std::move(poses)) {
+        for (const Solid& solid : scene.solids)
+            shapes_.push_back(convexOf(solid, scene.simulation.dimensions));
+    }
+    // The one that a point lies in, deeper than rounding, or -1.
+    int over(Vec3d point) const {
+        const double deep = 1e-3 * scene_.simulation.spacing;
+        for (size_t s = 0; s < shapes_.size(); ++s)
+            if (shapes_[s].nearest(ownPlace(point, poses_[s])).distance < -deep) return int(s);
+        return -1;
+    }
+
+private:
+    Vec3d ownPlace(Vec3d point, const SolidPose& pose) const {
+        Vec3d arm = point - toDouble(scene_.domain.min) - pose.middle;
+        const Vec3d size = scene_.domain.size();
+        for (int k = 0; k < scene_.simulation.dimensions; ++k)
+            if (scene_.domain.periodic(k)) arm[k] = std::remainder(arm[k], size[k]);
+        return {dot(arm, pose.axis[0]), dot(arm, pose.axis[1]), dot(arm, pose.axis[2])};
+    }
+
+    const Scene& scene_;
+    std::vector<SolidPose> poses_;
+    std::vector<Convex> shapes_;
+};
+
+// output.probes[0] (wall)
+std::string named(const char* list, size_t index, const std::string& name) {
+    return fmt::format("{}[{}]{}", list, index, name.empty() ? "" : " (" + name + ")");
+}
+
 // Wendland C2 with radius 1, without its norm.
 double wendland(double q) { return std::pow(1 - q, 4) * (1 + 4 * q); }
 
@@ -94,11 +156,7 @@ Probes::Probes(const Scene& scene) {
 void Probes::addFielded(const Scene& scene, const Probe& probe) {
     std::vector<Vec3d> points = sensor(scene, placed(scene, toDouble(probe.position)), probe.radius);
     const size_t perReading = probe.kind == ProbeKind::Point ? points.size() : 1;
-    if (probe.kind == ProbeKind::Line) {
-        points.clear();
-        const Vec3d from = toDouble(probe.from), way = toDouble(probe.to) - from;
-        for (int k = 0; k < probe.count; ++k) points.push_back(placed(scene, from + (double(k) / (probe.count - 1)) * way));
-    }
+    if (probe.kind == ProbeKind::Line) points = pointsOf(scene, probe);
     fielded_.push_back({PointsNear(points, supportRadius(scene), surroundings(scene, Surroundings::Nothing)), probe.order, perReading});
     for (size_t k = 0; k < points.size() / perReading; ++k) {
         const std::string name = probe.kind == ProbeKind::Line ? probe.name + "[" + std::to_string(k) + "]" : probe.name;
@@ -111,16 +169,10 @@ void Probes::addFielded(const Scene& scene, const Probe& probe) {
 void Probes::addGauge(const Scene& scene, const Probe& probe) {
     const int k = int(probe.axis), d = scene.simulation.dimensions;
     const double R = supportRadius(scene), dx = scene.simulation.spacing, low = scene.domain.min[k], high = scene.domain.max[k];
-    const int count = std::max(int(std::ceil(4 * (high - low) / dx)), 1);
-    std::vector<Vec3d> points;
-    for (int i = 0; i <= count; ++i) {
-        Vec3d at = placed(scene, toDouble(probe.position));
-        at[k] = low + (high - low) * i / count;
-        points.push_back(at);
-    }
+    const std::vector<Vec3d> points = pointsOf(scene, probe);
     const double volume = particleMass(scene) / scene.fluid.restDensity / (d == 2 ? dx : 1);
     const double norm = d == 2 ? 7 / (std::numbers::pi * R * R) : 21 / (2 * std::numbers::pi * R * R * R);
-    gauges_.push_back({PointsNear(points, R, surroundings(scene, Surroundings::Mirror)), low, (high - low) / count, R, volume * norm});
+    gauges_.push_back({PointsNear(points, R, surroundings(scene, Surroundings::Mirror)), low, (high - low) / double(points.size() - 1), R, volume * norm});
 }
 
 double Probes::heightOf(const Gauge& gauge, const std::vector<Particle>& particles) {
@@ -167,6 +219,33 @@ std::vector<double> Probes::read(const std::vector<Particle>& particles) const {
         }
     }
     return values;
+}
+
+std::string Probes::hiddenBySolids(const Scene& scene, Simulation& simulation) const {
+    if (scene.solids.empty() || !any()) return "";
+    const SolidsNow solids(scene, simulation.solidPoses());
+    std::string all;
+    size_t gauge = 0;
+    for (size_t i = 0; i < scene.output.probes.size(); ++i) {
+        const Probe& probe = scene.output.probes[i];
+        const size_t ownGauge = probe.kind == ProbeKind::Height ? gauge++ : 0;
+        const std::vector<Vec3d> points = pointsOf(scene, probe);
+        int solid = -1, inside = 0;
+        for (const Vec3d& p : points)
+            if (const int s = solids.over(p); s >= 0) solid = s, ++inside;
+        if (inside == 0) continue;
+        std::string what = fmt::format("{} of its {} points are inside ", inside, points.size());
+        if (probe.kind == ProbeKind::Point) what = "is inside ";
+        if (probe.kind == ProbeKind::Height) {
+            const Gauge& own = gauges_[ownGauge];
+            if (heightOf(own, simulation.particles()) > own.low) continue;
+            what = "finds no water and goes through ";
+        }
+        all += fmt::format("{}{} {}{}", all.empty() ? "" : "; ",
+                           named("output.probes", i, probe.name), what,
+                           named("solids", size_t(solid), scene.solids[size_t(solid)].name));
+    }
+    return all.empty() ? "" : all + ": no fluid can be read there; move one of the two";
 }
 
 double frontOf(const std::vector<Particle>& particles, Axis axis) {

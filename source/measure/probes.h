@@ -26,6 +26,10 @@ public:
     size_t column(const std::string& name) const;
     // One reading for each column.
     std::vector<double> read(const std::vector<Particle>&) const;
+    // One line about those that solids are over where the run stands, "" when there are none: points
+    // inside of one read nothing, or what is on its other side. A gauge through a solid counts when
+    // it finds no water: over a beach or a block under water it is where it should be.
+    std::string hiddenBySolids(const Scene&, Simulation&) const;
 
 private:
     // Points whose fields are one probe's; `perReading` of them make a mean.

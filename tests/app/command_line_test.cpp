@@ -6,6 +6,8 @@
 #include "core/hdf5_file.h"
 #include "shell.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace spindrift {
@@ -131,6 +133,18 @@ TEST_F(CommandLine, SeriesGoesToStandardOutputAlone) {
     const std::string last =
         outcome.text.substr(outcome.text.rfind('\n', outcome.text.size() - 2) + 1);
     EXPECT_GE(std::stod(last), 0.02);
+}
+
+// Once, on standard error, also when a run is quiet.
+TEST_F(CommandLine, ProbesInsideASolidAreNamed) {
+    const auto said = [&](const char* x) {
+        return call(fmt::format("test/solids_small --headless --quiet --steps 40 --set "
+                                "'output.probes=[{{\"name\":\"p\",\"position\":[{},0.15,0.4]}}]'", x),
+                    "2>&1 >/dev/null").text;
+    };
+    EXPECT_EQ(said("0.75"), "spindrift: output.probes[0] (p) is inside solids[2]: no fluid can be read "
+                            "there; move one of the two\n");
+    EXPECT_EQ(said("0.5"), "");
 }
 
 TEST_F(CommandLine, ProbesAreColumnsInEveryFormat) {

@@ -2,11 +2,13 @@
 
 #include "core/error.h"
 #include "measure/checkpoint.h"
+#include "measure/probes.h"
 #include "scene/check.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <utility>
 
 namespace spindrift {
@@ -56,6 +58,8 @@ Player::Player(Loaded loaded) { begin(std::move(loaded), false); }
 
 void Player::begin(Loaded loaded, bool again) {
     const RunState state = loaded.simulation->state();
+    const std::string hidden =
+        Probes(loaded.start.scene).hiddenBySolids(loaded.start.scene, *loaded.simulation);
     stepper_ = std::make_unique<Stepper>(std::move(loaded.simulation), loaded.start.scene);
     const Camera camera = scene.view.camera;
     loaded.start.scene.view.up = upOf(loaded.start.scene);   // gravity may change, the view should not
@@ -68,7 +72,8 @@ void Player::begin(Loaded loaded, bool again) {
     history_.add(measurement_);
     changes_.clear();
     halted.clear();
-    notice.clear();
+    notice = hidden;
+    if (!hidden.empty()) std::fprintf(stderr, "spindrift: %s\n", hidden.c_str());
     culprits.clear();
     lag_ = stepsPerSecond_ = realTimeFactor_ = 0;
     rateTime_ = inForceSince_ = measurement_.time;

@@ -2,12 +2,16 @@
 #include "measure/probes.h"
 
 #include "core/error.h"
+#include "meshes.h"
 #include "scene/json.h"
 #include "scene/particles.h"
+#include "sim/make_simulation.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 
 namespace spindrift {
 namespace {
@@ -147,6 +151,126 @@ TEST(Probes, CellsFindEveryNeighbour) {
     Particle nowhere = particles[0];
     nowhere.position.x = std::nan("");
     EXPECT_EQ(interpolate({nowhere}, points, 0.09)[0].neighbours, 0);
+}
+
+// A box of 1 m with a little fluid, one solid, and probes.
+Scene solidScene(int dimensions, const std::string& solid, const std::string& probes) {
+    Scene scene;
+    scene.simulation.dimensions = dimensions;
+    scene.simulation.spacing = 0.1f;
+    scene.domain = {{1, 1, 1}, {2, 2, 2}};
+    scene.fluid.bodies = {Body{{.min{1, 1, 1}, .max{1.2f, 1.2f, 2}}}};
+    scene.compute.threads = 1;
+    setKnob(scene, "solids=[{\"name\":\"thing\"," + solid + "}]");
+    setKnob(scene, "output.probes=" + probes);
+    return scene;
+}
+std::string hiddenIn(const Scene& scene) {
+    return Probes(scene).hiddenBySolids(scene, *makeSimulation(scene));
+}
+
+struct Hidden {
+    std::string solid;
+    std::function<bool(Vec3)> inside;
+    bool alsoFlat = true;
+};
+
+std::vector<Hidden> solidsOverProbes(const std::string& mesh) {
+    const auto box = [](Vec3 low, Vec3 high) {
+        return [=](Vec3 p) {
+            return p.x > low.x && p.y > low.y && p.z > low.z && p.x < high.x && p.y < high.y &&
+                   p.z < high.z;
+        };
+    };
+    const auto ball = [](Vec3 p) { return length(p - Vec3{1.5f, 1.5f, 1.5f}) < 0.35f; };
+    const std::string block = R"("shape":"block","min":[1.3,1.3,1.3],"max":[1.8,1.6,1.7])";
+    const std::string round = R"("center":[1.5,1.5,1.5],"radius":0.35)";
+    return {
+        {block, box({1.3f, 1.3f, 1.3f}, {1.8f, 1.6f, 1.7f})},
+        {block + R"(,"keyframes":[[0,0.1,0.2,0],[1,0,0,0]])",
+         box({1.4f, 1.5f, 1.3f}, {1.9f, 1.8f, 1.7f})},
+        {block + R"(,"keyframes":[[0,0,0,0,90],[1,0,0,0,90]])",
+         box({1.4f, 1.2f, 1.3f}, {1.7f, 1.7f, 1.7f})},
+        {block + R"(,"velocity":[1,0,0],"spin":90)", box({1.3f, 1.3f, 1.3f}, {1.8f, 1.6f, 1.7f})},
+        {block + R"(,"density":500)", box({1.3f, 1.3f, 1.3f}, {1.8f, 1.6f, 1.7f})},
+        {R"("shape":"sphere",)" + round, ball, false},
+        {R"("shape":"cylinder","axis":"z","height":0.6,)" + round,
+         [](Vec3 p) {
+             return std::hypot(p.x - 1.5f, p.y - 1.5f) < 0.35f && std::abs(p.z - 1.5f) < 0.3f;
+         }},
+        {R"("shape":"cylinder","axis":"x","height":0.6,)" + round,
+         [](Vec3 p) {
+             return std::hypot(p.y - 1.5f, p.z - 1.5f) < 0.35f && std::abs(p.x - 1.5f) < 0.3f;
+         },
+         false},
+        {R"("shape":"wedge","min":[1.2,1,1.2],"max":[1.8,1.7,1.8])",
+         [](Vec3 p) {
+             return p.y > 1 && p.y < 1.7f - std::abs(p.x - 1.5f) * 0.7f / 0.3f &&
+                    std::abs(p.z - 1.5f) < 0.3f;
+         }},
+        {R"("shape":"plane","center":[1,1.33,1],"normal":[0,3,0])",
+         [](Vec3 p) { return p.y < 1.33f; }},
+        {R"("shape":"mesh","scale":2,"offset":[1.1,1.2,1.1],"path":")" + mesh + "\"",
+         box({1.3f, 1.4f, 1.3f}, {1.7f, 1.8f, 1.9f}), false},
+    };
+}
+
+// Every shape, standing, moved, turned and floating, against points that are known to be in or out.
+TEST(Probes, SayThatTheyAreInASolid) {
+    const std::string mesh = boxSurface({0.1, 0.1, 0.1}, {0.3, 0.3, 0.4})
+                                 .write(::testing::TempDir() + "hiding.obj");
+    std::string probes = "[";
+    std::vector<Vec3> points;
+    for (int i = 0; i < 125; ++i) {
+        const Vec3 p{1.13f + 0.18f * float(i % 5), 1.14f + 0.17f * float(i / 5 % 5),
+                     1.11f + 0.19f * float(i / 25)};
+        points.push_back(p);
+        probes += fmt::format("{}{{\"name\":\"p{}\",\"position\":[{},{},{}]}}", i ? "," : "", i,
+                              p.x, p.y, p.z);
+    }
+    probes += "]";
+    for (const Hidden& h : solidsOverProbes(mesh))
+        for (const int dimensions : {3, 2}) {
+            if (dimensions == 2 && !h.alsoFlat) continue;
+            const std::string said = hiddenIn(solidScene(dimensions, h.solid, probes));
+            int inside = 0;
+            for (size_t i = 0; i < points.size(); ++i) {
+                const Vec3 p{points[i].x, points[i].y, dimensions == 2 ? 1.5f : points[i].z};
+                const std::string words =
+                    fmt::format("output.probes[{}] (p{}) is inside solids[0] (thing)", i, i);
+                EXPECT_EQ(said.find(words) != std::string::npos, h.inside(p))
+                    << h.solid << ", dimensions " << dimensions << " at " << i;
+                inside += h.inside(p);
+            }
+            EXPECT_GT(inside, 2) << h.solid;
+            EXPECT_LT(inside, 125) << h.solid;
+        }
+}
+
+TEST(Probes, SayHowMuchOfALineAndWhenAGaugeIsInASolid) {
+    const std::string pier = R"("shape":"block","min":[1.4,1,1],"max":[1.6,1.5,2])";
+    const std::string line =
+        R"([{"kind":"line","name":"l","from":[1.5,1.05,1.5],"to":[1.5,1.95,1.5],"count":10}])";
+    EXPECT_EQ(hiddenIn(solidScene(3, pier, line)),
+              "output.probes[0] (l) 5 of its 10 points are inside solids[0] (thing): no fluid can be "
+              "read there; move one of the two");
+    const auto gaugeAt = [&](float x) {
+        return fmt::format(R"([{{"kind":"height","name":"g","position":[{},1,1.5]}}])", x);
+    };
+    EXPECT_NE(hiddenIn(solidScene(3, pier, gaugeAt(1.5f)))
+                  .find("(g) finds no water and goes through solids[0] (thing)"),
+              std::string::npos);
+    EXPECT_EQ(hiddenIn(solidScene(3, pier, gaugeAt(1.4f))), "") << "in the pier's face";
+    EXPECT_EQ(hiddenIn(solidScene(3, pier, gaugeAt(1.8f))), "") << "dry, but free";
+    Scene under = solidScene(3, pier, gaugeAt(1.5f));
+    under.fluid.bodies = {Body{{.min{1, 1, 1}, .max{2, 1.9f, 2}}}};
+    EXPECT_EQ(hiddenIn(under), "") << "the water above it is read";
+    EXPECT_EQ(hiddenIn(solidScene(3, pier, R"([{"kind":"front","name":"f"}])")), "");
+    Scene around = solidScene(3, R"("shape":"block","min":[1.9,1,1],"max":[2.1,1.5,2])",
+                              R"([{"name":"p","position":[1.05,1.2,1.5]}])");
+    EXPECT_EQ(hiddenIn(around), "");
+    around.domain.periodicX = true;
+    EXPECT_NE(hiddenIn(around), "") << "its image on the other side";
 }
 
 }  // namespace
