@@ -2,12 +2,14 @@
 
 #include "core/error.h"
 #include "measure/checkpoint.h"
+#include "measure/read_series.h"
 #include "scene/check.h"
 #include "scene/json.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 
 namespace spindrift {
@@ -63,11 +65,42 @@ void chooseEnd(Scene& scene, const std::vector<KnobChoice>& choices, const StepS
                                              scene.output.time, file, clock.time));
 }
 
+std::vector<CurvePoint> curvesOf(const SeriesTable& series) {
+    std::optional<size_t> places[4];
+    constexpr const char* Names[] = {"time", "kinetic_energy", "potential_energy", "density_error"};
+    for (size_t k = 0; k < 4; ++k)
+        if (!(places[k] = find(series.columns, Names[k]))) return {};
+    std::vector<CurvePoint> curves;
+    for (const std::vector<double>& row : series.rows)
+        curves.push_back({float(row[*places[0]]), float(row[*places[1]]), float(row[*places[2]]),
+                          float(row[*places[3]])});
+    return curves;
+}
+
+// Of the first series that the run wrote and that is still there, by its name or beside the checkpoint.
+std::vector<CurvePoint> curvesOf(const Output& output, const StepState& clock,
+                                 const std::filesystem::path& folder) {
+    Measurement now;
+    now.time = clock.time, now.steps = clock.steps;
+    for (const std::string& name : {output.hdf5, output.csv, output.json})
+        for (const std::filesystem::path& path : {std::filesystem::path(name), folder / name}) {
+            std::error_code none;
+            if (!std::filesystem::is_regular_file(path, none)) continue;
+            try {
+                return curvesOf(rowsBefore(now, readSeries(path.string())));
+            } catch (const Error&) {}   // it is another run's
+        }
+    return {};
+}
+
 }  // namespace
 
 Start goOn(const std::string& file, const std::vector<KnobChoice>& choices) {
-    auto [scene, state] = readCheckpoint(file);
+    auto [scene, state, curves] = readCheckpoint(file);
     const auto before = builtFrom(scene);
+    if (auto whole = curvesOf(scene.output, state.clock, std::filesystem::path(file).parent_path());
+        !whole.empty())
+        curves = std::move(whole);
     const std::string left = leaveOutputs(scene.output);
     const View view = scene.view;
     const Window window = scene.window;
@@ -79,7 +112,7 @@ Start goOn(const std::string& file, const std::vector<KnobChoice>& choices) {
     chooseEnd(scene, choices, state.clock, file);
     std::string said = fmt::format("{}: goes on from step {} ({:.6g} s)", file, state.clock.steps, state.clock.time);
     if (!left.empty()) said += "; only what is named again is written, before it was " + left;
-    return {std::move(scene), std::move(state), file, view, window, said};
+    return {std::move(scene), std::move(state), file, view, window, std::move(curves), said};
 }
 
 }  // namespace spindrift

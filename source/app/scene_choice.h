@@ -1,5 +1,6 @@
 #pragma once
 // From what the user typed to a scene: which file, and which knobs over it.
+#include "measure/checkpoint.h"
 #include "scene/scene.h"
 #include "sim/simulation.h"
 
@@ -33,6 +34,7 @@ struct Start {
     std::string file = {};   // that both were read from
     View view = {};          // the scene's own looks, without the choices, which are for one run only: those of its checkpoints
     Window window = {};
+    std::vector<CurvePoint> before = {};   // what curves show of the run until then
     std::string said = {};   // of a run that goes on: one line about what it does and doesn't
 };
 // Sets the knobs, in order. Throws Error (Usage).

@@ -79,7 +79,8 @@ std::vector<SolidMotion> motionsOf(const std::vector<double>& numbers) {
     return out;
 }
 
-void writeAll(hid_t file, const Scene& scene, const RunState& s) {
+void writeAll(hid_t file, const Scene& scene, const RunState& s,
+              const std::vector<CurvePoint>& curves) {
     const std::string text = writeScene(scene);
     hdf5::writeArray(file, Format, H5T_STD_U8LE, H5T_NATIVE_UCHAR, text.data(), {text.size(), 1});
     writeNumbers(file, "version", {double(Version)});
@@ -98,6 +99,7 @@ void writeAll(hid_t file, const Scene& scene, const RunState& s) {
         writeVectors(file, "object velocities", "m/s", s.objects.velocities);
         hdf5::writeArray(file, "broken bonds", H5T_STD_U8LE, H5T_NATIVE_UCHAR, s.objects.broken.data(), {s.objects.broken.size(), 1});
     }
+    if (!curves.empty()) writeFloats(file, "curves", "", curves.data(), curves.size(), 4);
     if (!s.densities.empty()) writeFloats(file, "densities", "kg/m³", s.densities.data(), s.densities.size(), 1);
 }
 
@@ -142,6 +144,9 @@ Checkpoint readAll(hid_t file, const std::string& path) {
     if (!c.scene.objects.empty()) readObjects(file, c);
     if (isMixture(c.scene)) c.state.particles.bodies = readArray<uint16_t>(file, "bodies", H5T_NATIVE_UINT16, 1);
     if (carriesDensity(c.scene)) c.state.densities = readArray<float>(file, "densities", H5T_NATIVE_FLOAT, 1);
+    static_assert(sizeof(CurvePoint) == 4 * sizeof(float));
+    if (H5Lexists(file, "curves", H5P_DEFAULT) > 0)
+        c.curves = readArray<CurvePoint>(file, "curves", H5T_NATIVE_FLOAT, 4);
     if (c.state.particles.positions.empty() || c.state.particles.velocities.size() != c.state.particles.positions.size())
         throw Trouble{"velocities"};
     if (carriesDensity(c.scene) && c.state.densities.size() != c.state.particles.positions.size()) throw Trouble{"densities"};
@@ -158,9 +163,10 @@ Checkpoint readAll(hid_t file, const std::string& path) {
 
 }  // namespace
 
-void writeCheckpoint(const std::string& path, const Scene& scene, const RunState& state) {
+void writeCheckpoint(const std::string& path, const Scene& scene, const RunState& state,
+                     const std::vector<CurvePoint>& curves) {
     replaceFile(path, [&](const std::string& temporary) {
-        return hdf5::writeFile(temporary, [&](hid_t file) { writeAll(file, scene, state); });
+        return hdf5::writeFile(temporary, [&](hid_t file) { writeAll(file, scene, state, curves); });
     });
 }
 

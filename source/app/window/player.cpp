@@ -69,6 +69,12 @@ void Player::begin(Loaded loaded, bool again) {
     start_ = state.start;
     measurement_ = stepper_->measurement();
     history_ = {};
+    for (const CurvePoint& p : origin_.before) {
+        Measurement m;
+        m.time = p.time, m.kineticEnergy = p.kineticEnergy, m.potentialEnergy = p.potentialEnergy;
+        m.densityError = p.densityError;
+        history_.add(m);
+    }
     history_.add(measurement_);
     changes_.clear();
     halted.clear();
@@ -122,7 +128,11 @@ void Player::saveCheckpoint(const std::string& file) {
     while (stepper_->busy()) stepper_->wait(1);
     const RunState state =
         culprits.empty() ? stepper_->simulation().state() : stepper_->guard().lastGood();
-    writeCheckpoint(file, scene, state);
+    std::vector<CurvePoint> curves;
+    for (size_t i = 0; i < history_.time.size() && history_.time[i] <= float(state.clock.time); ++i)
+        curves.push_back({history_.time[i], history_.kinetic[i], history_.potential[i],
+                          history_.densityError[i]});
+    writeCheckpoint(file, scene, state, curves);
     savedSteps_ = std::max(state.clock.steps, measurement_.steps);
 }
 

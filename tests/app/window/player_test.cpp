@@ -233,6 +233,56 @@ TEST(Player, TroubleThatShorterStepsCantHelpHaltsTheRunAndMarksParticles) {
     EXPECT_TRUE(player.halted.empty() && player.notice.empty() && player.culprits.empty());
 }
 
+TEST(Player, ProbesInsideASolidAreNoticed) {
+    Scene scene = loadScene(SPINDRIFT_SOURCE_DIR "/configs/test/solids_small.json");
+    scene.output.probes = {Probe{}};
+    scene.output.probes[0].position = {0.8f, 0.15f, 0.4f};
+    EXPECT_NE(Player(ready(scene)).notice.find("(probe) is inside solids[2]"), std::string::npos);
+    scene.output.probes[0].position = {0.5f, 0.15f, 0.4f};
+    EXPECT_EQ(Player(ready(scene)).notice, "");
+}
+
+// Curves go on where the run before had them: in the checkpoint of a window, or in a series.
+TEST(Player, CurvesOfARunThatGoesOnShowAllOfIt) {
+    const auto folder = std::filesystem::temp_directory_path() / ("spindrift-curves-" + std::to_string(getpid()));
+    std::filesystem::create_directories(folder);
+    const std::string kept = (folder / "kept.h5").string(), plain = (folder / "plain.h5").string(),
+                      series = (folder / "run.csv").string();
+    Player player(ready(loadScene(small)));
+    ASSERT_TRUE(play(player, [&] { return player.measurement().steps >= 20; }));
+    player.saveCheckpoint(kept);
+    const History before = player.history();
+    ASSERT_GE(before.time.size(), 3u);
+    player.load(kept);
+    finishLoading(player);
+    EXPECT_EQ(player.history().time, before.time);
+    EXPECT_EQ(player.history().total, before.total);
+    EXPECT_EQ(player.history().densityError, before.densityError);
+
+    // The same run's series, up to its last row and beyond; and one of another run.
+    const Checkpoint c = readCheckpoint(kept);
+    const auto load = [&](double scale) {
+        Scene scene = c.scene;
+        scene.output.csv = "run.csv";
+        std::ofstream csv(series);
+        csv << "time [s],step,kinetic_energy [J],potential_energy [J],density_error [1]\n";
+        for (const double share : {0.0, 0.5, 1.5})
+            csv << scale * share * c.state.clock.time << "," << int64_t(share * double(c.state.clock.steps)) << ",1,2,0.01\n";
+        csv.close();
+        writeCheckpoint(plain, scene, c.state);
+        player.load(plain);
+        finishLoading(player);
+        return player.history();
+    };
+    const History own = load(1), others = load(10);
+    ASSERT_EQ(own.time.size(), 3u) << "two rows, and where it stands";
+    EXPECT_FLOAT_EQ(own.time[1], float(0.5 * c.state.clock.time));
+    EXPECT_EQ(own.total[1], 3);
+    EXPECT_EQ(own.densityError[1], 0.01f);
+    EXPECT_EQ(others.time.size(), 1u);
+    std::filesystem::remove_all(folder);
+}
+
 TEST(History, ThinsOutInsteadOfGrowing) {
     History history;
     Measurement m;
