@@ -71,6 +71,10 @@ static std::unique_ptr<Simulation> build(const Scene& scene, const RunState* sta
     try {
         const RunState start = state ? RunState() : RunState(placeParticles(scene));
         const RunState& from = state ? *state : start;
+        if (from.particles.positions.empty())
+            throw Error(Exit::Scene,
+                        "fluid.bodies: not one particle fits into them beside the solids and objects; "
+                        "move or shrink those, a mesh whose file is in millimetres by its scale");
         if (gpu) return makeCudaSimulation(scene, from, deviceOf(scene));
         return scene.compute.precision == Precision::Double ? makeDoubleSimulation(scene, from, threadCount(scene))
                                                             : makeSimdSimulation(scene, from, threadCount(scene));

@@ -8,6 +8,7 @@
 #include "scene/particles.h"
 #include "scene/sample_object.h"
 #include "scene/sample_solid.h"
+#include "sim/make_simulation.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -470,6 +471,28 @@ TEST(MeshSolids, TellThatTheirFileMayBeInMillimetres) {
                     << said;
             }
         }
+}
+
+// Whatever covers all fluid: a mesh several tanks large, a block, a plane.
+TEST(MeshSolids, ThatLeaveNoFluidAreRefused) {
+    const std::string path = fileOf("large.obj", boxSurface({-1, -1, -1}, {3, 3, 3}).text());
+    for (const std::string& solid :
+         {R"("shape":"mesh","path":")" + path + "\"", std::string(R"("min":[-1,-1,-1],"max":[3,3,3])"),
+          std::string(R"("shape":"plane","center":[0,2,0])")}) {
+        Scene scene;
+        scene.simulation.spacing = 0.1f;
+        scene.domain.max = {1, 1, 1};
+        setKnob(scene, "solids=[{" + solid + "}]");
+        try {
+            makeSimulation(scene);
+            ADD_FAILURE() << solid;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.exit, Exit::Scene);
+            EXPECT_NE(std::string(error.what()).find("fluid.bodies: not one particle fits"),
+                      std::string::npos)
+                << error.what();
+        }
+    }
 }
 
 // Boxes that overlap, that touch by an edge, and of which one is inside out.
