@@ -159,7 +159,7 @@ Scene solidScene(int dimensions, const std::string& solid, const std::string& pr
     scene.simulation.dimensions = dimensions;
     scene.simulation.spacing = 0.1f;
     scene.domain = {{1, 1, 1}, {2, 2, 2}};
-    scene.fluid.bodies = {Body{{.min{1, 1, 1}, .max{1.2f, 1.2f, 2}}}};
+    scene.fluid.bodies = {Body{{.min{1, 1.8f, 1}, .max{1.2f, 2, 2}}}};
     scene.compute.threads = 1;
     setKnob(scene, "solids=[{\"name\":\"thing\"," + solid + "}]");
     setKnob(scene, "output.probes=" + probes);
