@@ -45,7 +45,7 @@ constexpr Shortcut Shortcuts[] = {
     {"--hdf5", "output.hdf5", "FILE", "time series as HDF5"},
     {"--checkpoint", "output.checkpoint", "FILE", "writes a file from which the run can go on"},
     {"--backend", "compute.backend", "NAME", "auto, cpu or cuda"},
-    {"--threads", "compute.threads", "N", "CPU threads; all cores without it"},
+    {"--threads", "compute.threads", "N", "CPU threads; without it all cores, or fewer while others use them"},
     {"--device", "compute.device", "N", "number of the GPU; the one that draws without it"},
 };
 

@@ -4,7 +4,7 @@ namespace spindrift {
 
 int Omp::sortByCell(int n, const int* key, int rows, int rowLength, int pad, int* cellStart,
                     Buffer<int, Omp>& order) {
-    const int threads = std::max(1, std::min(threads_, n / 1024));
+    const int threads = std::max(1, std::min(team_.size(), n / 1024));
     const size_t cells = size_t(rows) * rowLength;
     counts_.resize(threads);
     rowSlots_.resize(rows + 1);

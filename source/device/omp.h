@@ -4,6 +4,7 @@
 #include "core/pass_time.h"
 #include "core/vertex.h"
 #include "device/buffer.h"
+#include "device/team.h"
 
 #include <sys/mman.h>
 
@@ -18,8 +19,9 @@ namespace spindrift {
 
 class Omp {
 public:
-    explicit Omp(int threads) : threads_(threads) {}
-    int threads() const { return threads_; }
+    // With `adapts` fewer than these where that is faster: where others use the cores too.
+    explicit Omp(int threads, bool adapts = false) : team_(threads, adapts) {}
+    int threads() const { return team_.size(); }
     static constexpr int index() { return hostMemory; }
     int64_t bytes() const { return bytes_; }   // held by buffers
 
@@ -46,14 +48,14 @@ public:
     // Calls body(begin, end) for pieces of [0, n); pieces begin at multiples of `piece`.
     template <class Body> void forRanges(int n, int piece, const Body& body) {
         const int pieces = (n + piece - 1) / piece;
-        const int threads = std::min(threads_, (pieces + 3) / 4);   // waking a thread costs more than a few pieces
+        const int threads = std::min(team_.size(), (pieces + 3) / 4);   // waking a thread costs more than a few pieces
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads) if (threads > 1)
         for (int k = 0; k < pieces; ++k) body(k * piece, std::min(n, (k + 1) * piece));
     }
 
     // Calls body(k) for k in [0, n), each some hundred microseconds of work.
     template <class Body> void forTasks(int n, const Body& body) {
-        const int threads = std::min(threads_, n);
+        const int threads = std::min(team_.size(), n);
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads) if (threads > 1)
         for (int k = 0; k < n; ++k) body(k);
     }
@@ -111,6 +113,8 @@ public:
         ++time->runs;
     }
     void collectTimes() {}
+    // A whole step.
+    template <class F> void step(const F& f) { team_.note(milliseconds(f)); }
     // The ms that each of `count` calls took.
     template <class F> std::vector<double> timeEach(int count, const F& f) {
         std::vector<double> ms(count);
@@ -127,7 +131,7 @@ private:
         return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     }
 
-    int threads_;
+    Team team_;
     int64_t bytes_ = 0;
     std::vector<std::vector<int>> counts_;  // per thread and cell: first the count, then the next free slot
     std::vector<int> rowSlots_;             // slots in a row, then their running sum

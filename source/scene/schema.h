@@ -306,7 +306,7 @@ void visitProgram(S& s, Visitor&& visit) {
           Knob{"", 0, 0, "of state and arithmetic", Restart});
     visit("compute.simd", s.compute.simd, Knob{"", 0, 0, "widest CPU instructions used", Restart});
     visit("compute.threads", s.compute.threads,
-          Knob{"", 0, 4096, "CPU threads, 0 = all cores", Restart});
+          Knob{"", 0, 4096, "CPU threads, 0 = all cores, or fewer while others use them", Restart});
     visit("compute.device", s.compute.device,
           Knob{"", -1, 63, "number of the GPU, -1 = the one that draws, else the first", Restart});
     visit("compute.skin", s.compute.skin,

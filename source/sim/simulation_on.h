@@ -281,8 +281,10 @@ private:
             device_.forEach(1, ChooseMoment{view(), localSteps_.motion(), fluidCount_});
             return;
         }
-        do runPlan();
-        while (hasLocalSteps() && clock().moment != 0);
+        device_.step([&] {
+            do runPlan();
+            while (hasLocalSteps() && clock().moment != 0);
+        });
         if (objects_.isDriven() && objects_.exchange(clock().time)) outdateRecordings();
     }
     // There is nothing to be done but to let time pass. (A GPU would have to be asked.)

@@ -24,7 +24,7 @@ HWY_BEFORE_NAMESPACE();
 namespace spindrift::LANES {
 
 std::unique_ptr<Simulation> makeSimulationOn(const Scene& scene, const RunState& state, int threads, const std::string& instructionSet) {
-    return std::make_unique<SimulationOn<Omp>>(scene, state, Omp(threads), cpuName(threads, instructionSet + ", float"));
+    return std::make_unique<SimulationOn<Omp>>(scene, state, Omp(threads, scene.compute.threads == 0), cpuName(threads, instructionSet + ", float"));
 }
 
 }  // namespace spindrift::LANES
