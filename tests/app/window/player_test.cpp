@@ -252,7 +252,7 @@ TEST(Player, CurvesOfARunThatGoesOnShowAllOfIt) {
     ASSERT_TRUE(play(player, [&] { return player.measurement().steps >= 20; }));
     player.saveCheckpoint(kept);
     const History before = player.history();
-    ASSERT_GE(before.time.size(), 3u);
+    ASSERT_GE(before.time.size(), 2u);
     player.load(kept);
     finishLoading(player);
     // The run may have been a few steps further than what had been measured of it.
@@ -260,7 +260,7 @@ TEST(Player, CurvesOfARunThatGoesOnShowAllOfIt) {
     ASSERT_GE(after.time.size(), before.time.size());
     for (size_t i = 0; i < before.time.size(); ++i) {
         EXPECT_EQ(after.time[i], before.time[i]);
-        EXPECT_EQ(after.total[i], before.total[i]);
+        EXPECT_FLOAT_EQ(after.total[i], before.total[i]);
         EXPECT_EQ(after.densityError[i], before.densityError[i]);
     }
 
@@ -270,6 +270,7 @@ TEST(Player, CurvesOfARunThatGoesOnShowAllOfIt) {
         Scene scene = c.scene;
         scene.output.csv = "run.csv";
         std::ofstream csv(series);
+        csv.precision(9);
         csv << "time [s],step,kinetic_energy [J],potential_energy [J],density_error [1]\n";
         for (const double share : {0.0, 0.5, 1.5})
             csv << scale * share * c.state.clock.time << "," << int64_t(share * double(c.state.clock.steps)) << ",1,2,0.01\n";
