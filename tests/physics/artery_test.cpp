@@ -58,6 +58,7 @@ void runUntil(Simulation& simulation, double time) {
 TEST(Artery, NobodyLeavesThroughTheWall) {
     for (const float ratio : {1.0f, 2.0f, 4.0f})
         for (const float influence : {1.25f, 1.5f, 1.75f}) {
+            if ((ratio == 2) != (influence == 1.5f)) continue;   // the middle and the corners
             Scene scene = artery();
             scene.objects[0].spacing = ratio * scene.simulation.spacing, scene.contact.influence = influence;
             auto simulation = makeSimulation(scene);

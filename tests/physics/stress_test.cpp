@@ -51,7 +51,7 @@ TEST(RandomScenes, AreTheSameForTheSameSeed) {
 
 // Half as long again is sound too; and the search does find where it ends.
 TEST(StabilityMaps, TheAutomaticStepLiesInside) {
-    for (const char* scene : {"drop impact", "still pool", "vortices in a full box"})
+    for (const char* scene : {"drop impact"})   // `spindrift stress --full` has the others
         for (const StabilityRow& row : stabilityMap(scene, "", "time.step").rows) {
             EXPECT_TRUE(row.usualIsSound) << scene << ", " << row.formulation;
             EXPECT_EQ(row.low, row.least) << scene << ", " << row.formulation;
