@@ -65,11 +65,12 @@ void chooseEnd(Scene& scene, const std::vector<KnobChoice>& choices, const StepS
                                              scene.output.time, file, clock.time));
 }
 
-std::vector<CurvePoint> curvesOf(const SeriesTable& series) {
+std::vector<CurvePoint> curvesOf(const SeriesTable& series, int dimensions) {
     std::optional<size_t> places[4];
     constexpr const char* Names[] = {"time", "kinetic_energy", "potential_energy", "density_error"};
     for (size_t k = 0; k < 4; ++k)
         if (!(places[k] = find(series.columns, Names[k]))) return {};
+    if (series.columns[*places[1]].unit != perDepth("J", dimensions)) return {};   // an older program's
     std::vector<CurvePoint> curves;
     for (const std::vector<double>& row : series.rows)
         curves.push_back({float(row[*places[0]]), float(row[*places[1]]), float(row[*places[2]]),
@@ -78,16 +79,18 @@ std::vector<CurvePoint> curvesOf(const SeriesTable& series) {
 }
 
 // Of the first series that the run wrote and that is still there, by its name or beside the checkpoint.
-std::vector<CurvePoint> curvesOf(const Output& output, const StepState& clock,
+std::vector<CurvePoint> curvesOf(const Scene& scene, const StepState& clock,
                                  const std::filesystem::path& folder) {
     Measurement now;
     now.time = clock.time, now.steps = clock.steps;
+    const Output& output = scene.output;
     for (const std::string& name : {output.hdf5, output.csv, output.json})
         for (const std::filesystem::path& path : {std::filesystem::path(name), folder / name}) {
             std::error_code none;
             if (!std::filesystem::is_regular_file(path, none)) continue;
             try {
-                return curvesOf(rowsBefore(now, readSeries(path.string())));
+                return curvesOf(rowsBefore(now, readSeries(path.string())),
+                                scene.simulation.dimensions);
             } catch (const Error&) {}   // it is another run's
         }
     return {};
@@ -98,7 +101,7 @@ std::vector<CurvePoint> curvesOf(const Output& output, const StepState& clock,
 Start goOn(const std::string& file, const std::vector<KnobChoice>& choices) {
     auto [scene, state, curves] = readCheckpoint(file);
     const auto before = builtFrom(scene);
-    if (auto whole = curvesOf(scene.output, state.clock, std::filesystem::path(file).parent_path());
+    if (auto whole = curvesOf(scene, state.clock, std::filesystem::path(file).parent_path());
         !whole.empty())
         curves = std::move(whole);
     const std::string left = leaveOutputs(scene.output);

@@ -312,8 +312,9 @@ private:
             fmt::print(out, "local steps    {:.3g} evaluations of a particle a step\n",
                        (now_.evaluations - evaluationsBefore_) / double(simulation_->fluidCount()) / double(made_));
         fmt::print(out, "simulated      {:.4g} s, last step {:.3g} s\n", now_.time, now_.dt);
-        fmt::print(out, "energy         {:.4g} J kinetic, {:.4g} J potential\n", now_.kineticEnergy,
-                   now_.potentialEnergy);
+        const std::string joule = perDepth("J", now_.dimensions);
+        fmt::print(out, "energy         {:.4g} {} kinetic, {:.4g} {} potential\n", now_.kineticEnergy,
+                   joule, now_.potentialEnergy, joule);
         fmt::print(out, "density error  {:.3g} % mean, {:.3g} % largest\n", 100 * now_.densityError,
                    100 * now_.maxDensityError);
         if (guard_->retries() > 0) fmt::print(out, "went back      {} times, on with shorter steps\n", guard_->retries());

@@ -17,7 +17,8 @@ namespace {
 using hdf5::Handle, hdf5::Trouble, hdf5::require;
 
 constexpr const char* Format = "spindrift checkpoint";
-constexpr int64_t Version = 4;   // 2: densities, where they are carried; 3: bodies, of mixtures; 4: motions of solids, objects
+constexpr int64_t Version = 5;   // 2: densities, where they are carried; 3: bodies, of mixtures; 4: motions of solids, objects;
+                                 // 5: per metre of depth in two dimensions
 
 // --- numbers and texts as attributes of the file ---
 
@@ -103,6 +104,15 @@ void writeAll(hid_t file, const Scene& scene, const RunState& s,
     if (!s.densities.empty()) writeFloats(file, "densities", "kg/m³", s.densities.data(), s.densities.size(), 1);
 }
 
+// Until version 4 what has a depth in two dimensions was of a slab one spacing thick.
+void spreadOverMetre(Checkpoint& c) {
+    if (c.scene.simulation.dimensions != 2) return;
+    const float perMetre = 1 / c.scene.simulation.spacing;
+    c.scene.fluid.particleMass *= perMetre, c.scene.contact.stiffness *= perMetre;
+    for (SolidMotion& m : c.state.solids) m.angularMomentum = double(perMetre) * m.angularMomentum;
+    for (CurvePoint& p : c.curves) p.kineticEnergy *= perMetre, p.potentialEnergy *= perMetre;
+}
+
 // How many of the walls belong to each solid.
 void readSolidSizes(hid_t file, Checkpoint& c) {
     size_t all = 0;
@@ -127,7 +137,8 @@ void readObjects(hid_t file, Checkpoint& c) {
 Checkpoint readAll(hid_t file, const std::string& path) {
     Checkpoint c;
     const std::vector<char> text = readArray<char>(file, Format, H5T_NATIVE_UCHAR, 1);
-    if (readNumbers(file, "version", 1)[0] > double(Version))
+    const double version = readNumbers(file, "version", 1)[0];
+    if (version > double(Version))
         throw Error(Exit::Scene, path + ": is of a newer version of the program; update it");
     c.scene = parseScene(std::string(text.begin(), text.end()), path);
     const std::vector<double> clock = readNumbers(file, "clock", 3);
@@ -158,6 +169,7 @@ Checkpoint readAll(hid_t file, const std::string& path) {
     for (const auto* field : {&c.state.particles.positions, &c.state.particles.velocities, &c.state.particles.walls, &c.state.objects.positions, &c.state.objects.velocities})
         for (const Vec3& v : *field)
             if (!std::isfinite(v.x + v.y + v.z)) throw Trouble{"numbers that are not finite"};
+    if (version < 5) spreadOverMetre(c);
     return c;
 }
 

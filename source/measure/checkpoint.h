@@ -8,7 +8,7 @@
 
 namespace spindrift {
 
-// What the window's curves show of a moment: s, J, J, 1.
+// What the window's curves show of a moment: s, J, J, 1; in two dimensions J/m.
 struct CurvePoint {
     float time, kineticEnergy, potentialEnergy, densityError;
 };

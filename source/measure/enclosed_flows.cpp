@@ -43,8 +43,8 @@ double smallestDistance(std::vector<Particle> particles) {
 
 double volumeOf(const std::vector<Particle>& particles, const Scene& scene) {
     double volume = 0;
-    for (const Particle& p : particles) volume += particleMass(scene) / (p.density * scene.simulation.spacing);
-    return volume;   // per metre of depth, m^2
+    for (const Particle& p : particles) volume += particleMass(scene) / p.density;
+    return volume;   // m^2
 }
 
 }  // namespace
@@ -77,7 +77,7 @@ void runTaylorGreen(const Scene& scene, ValidationRun& run, double until, const 
     std::optional<double> target;
     for (const auto& [from, limit] : targets)
         if (run.resolution >= from) target = limit;
-    const double depth = scene.simulation.spacing, energy = rho0 / 4 * std::pow(exact.decay(m.time), 2) * depth;
+    const double energy = rho0 / 4 * std::pow(exact.decay(m.time), 2);   // J/m
     const bool judged = target.has_value();
     run.metrics = {{"L1 of u", "%", 100 * norms.L1(), judged ? std::optional(100 * *target) : std::nullopt},
                    {"L2 of u", "%", 100 * norms.L2(), {}},
@@ -85,7 +85,7 @@ void runTaylorGreen(const Scene& scene, ValidationRun& run, double until, const 
                    {"energy", "%", 100 * (m.kineticEnergy / energy - 1), judged && until < 3 ? std::optional(1.0) : std::nullopt},
                    {"L1 of p", "%", 100 * pressure / mostPressure, {}},
                    {"volume", "%", 100 * (volumeOf(particles, scene) - 1), judged ? std::optional(0.01) : std::nullopt},
-                   {"momentum / M U", "", length(m.momentum) / (rho0 * depth * U), {}},
+                   {"momentum / M U", "", length(m.momentum) / (rho0 * U), {}},
                    {"smallest distance / dx", "", smallestDistance(particles) / scene.simulation.spacing, {}}};
 }
 

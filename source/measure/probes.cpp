@@ -168,9 +168,9 @@ void Probes::addFielded(const Scene& scene, const Probe& probe) {
 
 void Probes::addGauge(const Scene& scene, const Probe& probe) {
     const int k = int(probe.axis), d = scene.simulation.dimensions;
-    const double R = supportRadius(scene), dx = scene.simulation.spacing, low = scene.domain.min[k], high = scene.domain.max[k];
+    const double R = supportRadius(scene), low = scene.domain.min[k], high = scene.domain.max[k];
     const std::vector<Vec3d> points = pointsOf(scene, probe);
-    const double volume = particleMass(scene) / scene.fluid.restDensity / (d == 2 ? dx : 1);
+    const double volume = particleMass(scene) / scene.fluid.restDensity;
     const double norm = d == 2 ? 7 / (std::numbers::pi * R * R) : 21 / (2 * std::numbers::pi * R * R * R);
     gauges_.push_back({PointsNear(points, R, surroundings(scene, Surroundings::Mirror)), low, (high - low) / double(points.size() - 1), R, volume * norm});
 }

@@ -18,6 +18,7 @@ namespace {
 struct Quantity {
     const char *name, *unit;
     double (*of)(const Measurement&);
+    bool hasDepth = false;   // in two dimensions it is per metre of depth
 };
 
 // The first columns, in their order; those of the caller and the passes' times, averages of one run, follow them.
@@ -25,11 +26,11 @@ constexpr Quantity Quantities[] = {
     {"time", "s", [](const Measurement& m) { return m.time; }},
     {"step", "", [](const Measurement& m) { return double(m.steps); }},
     {"dt", "s", [](const Measurement& m) { return m.dt; }},
-    {"kinetic_energy", "J", [](const Measurement& m) { return m.kineticEnergy; }},
-    {"potential_energy", "J", [](const Measurement& m) { return m.potentialEnergy; }},
-    {"momentum_x", "kg m/s", [](const Measurement& m) { return m.momentum.x; }},
-    {"momentum_y", "kg m/s", [](const Measurement& m) { return m.momentum.y; }},
-    {"momentum_z", "kg m/s", [](const Measurement& m) { return m.momentum.z; }},
+    {"kinetic_energy", "J", [](const Measurement& m) { return m.kineticEnergy; }, true},
+    {"potential_energy", "J", [](const Measurement& m) { return m.potentialEnergy; }, true},
+    {"momentum_x", "kg m/s", [](const Measurement& m) { return m.momentum.x; }, true},
+    {"momentum_y", "kg m/s", [](const Measurement& m) { return m.momentum.y; }, true},
+    {"momentum_z", "kg m/s", [](const Measurement& m) { return m.momentum.z; }, true},
     {"center_of_mass_x", "m", [](const Measurement& m) { return m.centerOfMass.x; }},
     {"center_of_mass_y", "m", [](const Measurement& m) { return m.centerOfMass.y; }},
     {"center_of_mass_z", "m", [](const Measurement& m) { return m.centerOfMass.z; }},
@@ -40,20 +41,21 @@ constexpr Quantity Quantities[] = {
     {"evaluations", "", [](const Measurement& m) { return m.evaluations; }},   // of a particle's forces, since the beginning
 };
 
-struct SolidQuantity { const char *name, *unit; Vec3d SolidMeasurement::*of; };
+struct SolidQuantity { const char *name, *unit; Vec3d SolidMeasurement::*of; bool hasDepth = false; };
 constexpr SolidQuantity SolidQuantities[] = {{"position", "m", &SolidMeasurement::position},
                                              {"velocity", "m/s", &SolidMeasurement::velocity},
                                              {"spin", "rad/s", &SolidMeasurement::spin},
-                                             {"pressure_force", "N", &SolidMeasurement::pressureForce},
-                                             {"viscous_force", "N", &SolidMeasurement::viscousForce},
-                                             {"torque", "N m", &SolidMeasurement::torque}};
+                                             {"pressure_force", "N", &SolidMeasurement::pressureForce, true},
+                                             {"viscous_force", "N", &SolidMeasurement::viscousForce, true},
+                                             {"torque", "N m", &SolidMeasurement::torque, true}};
 
 // Calls f(name, unit, value) for each column but those of passes.
 template <class F> void forValues(const Measurement& m, const F& f) {
-    for (const Quantity& q : Quantities) f(q.name, q.unit, q.of(m));
+    const auto unitOf = [&](const auto& q) { return q.hasDepth ? perDepth(q.unit, m.dimensions) : q.unit; };
+    for (const Quantity& q : Quantities) f(q.name, unitOf(q), q.of(m));
     for (const SolidMeasurement& s : m.solids)
         for (const SolidQuantity& q : SolidQuantities)
-            for (int k = 0; k < 3; ++k) f(fmt::format("{}.{}_{}", s.name, q.name, "xyz"[k]), q.unit, (s.*q.of)[k]);
+            for (int k = 0; k < 3; ++k) f(fmt::format("{}.{}_{}", s.name, q.name, "xyz"[k]), unitOf(q), (s.*q.of)[k]);
 }
 
 }  // namespace
@@ -66,7 +68,7 @@ TimeSeries::TimeSeries(std::vector<Column> more, const std::vector<PlanRow>& pla
 }
 
 void TimeSeries::chooseColumns(const Measurement& m) {
-    forValues(m, [&](const std::string& name, const char* unit, double) { columns_.push_back({name, unit}); });
+    forValues(m, [&](const std::string& name, const std::string& unit, double) { columns_.push_back({name, unit}); });
     columns_.insert(columns_.end(), more_.begin(), more_.end());
     columns_.insert(columns_.end(), passes_.begin(), passes_.end());
 }
@@ -93,7 +95,7 @@ void TimeSeries::add(const Measurement& m, const std::vector<PassTime>& passes, 
     CHECK(more.size() == more_.size());
     if (columns_.empty()) chooseColumns(m);
     std::vector<double> row;
-    forValues(m, [&](const std::string&, const char*, double value) { row.push_back(value); });
+    forValues(m, [&](const std::string&, const std::string&, double value) { row.push_back(value); });
     row.insert(row.end(), more.begin(), more.end());
     row.resize(row.size() + passes_.size(), 0);
     row.resize(columns_.size(), std::nan(""));

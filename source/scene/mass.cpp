@@ -19,7 +19,7 @@ Mass massOf(const Scene& scene, const Solid& solid) {
     if (solid.shape == Shape::Mesh) return massOfMesh(solid);
     const bool flat = scene.simulation.dimensions == 2;
     Vec3d half = halfExtent(solid);
-    if (flat) half.z = 0.5 * double(scene.simulation.spacing);
+    if (flat) half.z = 0.5;   // of a metre of depth
     const double pi = std::numbers::pi, r = solid.radius;
     // Volume, and the mean squares of the distances from the centre along each axis.
     double volume = 8 * half.x * half.y * half.z;

@@ -323,10 +323,18 @@ float supportRadius(const Scene& scene) {
     return scene.simulation.support * scene.simulation.spacing;
 }
 
+std::string perDepth(const std::string& unit, int dimensions) {
+    return dimensions == 2 ? unit + "/m" : unit;
+}
+
+double particleVolume(const Scene& scene) {
+    return std::pow(double(scene.simulation.spacing), scene.simulation.dimensions);
+}
+
 float particleMass(const Scene& scene) {
     if (scene.fluid.particleMass > 0) return scene.fluid.particleMass;
-    const float dx = scene.simulation.spacing;
-    return scene.fluid.restDensity * dx * dx * dx;
+    const float dx = scene.simulation.spacing, area = scene.fluid.restDensity * dx * dx;
+    return scene.simulation.dimensions == 2 ? area : area * dx;
 }
 
 bool carriesDensity(const Scene& scene) {

@@ -10,10 +10,10 @@
 
 namespace spindrift {
 
-// Of particles `a` < `b`: m at rest, N/m.
+// Of particles `a` < `b`: m at rest, N/m, in two dimensions N/m per metre of depth.
 struct Bond { int a, b; float length, stiffness; };
 
-// All objects of a scene, one after the other: m from domain.min, kg, m; the object that each particle is of, the first grip that holds it or -1, and
+// All objects of a scene, one after the other: m from domain.min, kg (in two dimensions kg/m), m; the object that each particle is of, the first grip that holds it or -1, and
 // whether it is at the surface. Lattices of springs along the edges and the diagonals of faces of their cells are isotropic, with Poisson's ratio 1/4 in three
 // dimensions and 1/3 in a layer (Hrennikoff 1941); bonds that several cells share are as stiff as all their shares.
 struct ObjectSample {

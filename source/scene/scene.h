@@ -118,7 +118,7 @@ struct Cut {
 // Contact of fluid with objects, and of objects with each other (discrete element method).
 struct Contact {
     float influence = 1.5f;                     // fluid is kept so many times the sum of two particles' radii away
-    float stiffness = 0;                        // N/m, 0 = what the time step bears
+    float stiffness = 0;                        // N/m, 0 = what the time step bears; in two dimensions N/m/m
     float steepness = 2;                        // the spring is exp(steepness (1 - distance / reach)) times as stiff
     float damping = 0.1f;                       // share of the critical one
     float shear = 0.1f;                         // the same, along the surface
@@ -176,7 +176,7 @@ struct Walls {
 
 struct Fluid {
     float restDensity = 1000;                   // kg/m³
-    float particleMass = 0;                     // kg, 0 = rest density x spacing^3
+    float particleMass = 0;                     // kg, 0 = rest density x spacing^3; in 2D kg/m, spacing^2
     float soundSpeed = 0;                       // m/s, 0 = speed_ratio x the expected largest speed
     float speedRatio = 10;                      // sound speed / expected largest speed
     float backgroundPressure = 0;               // Pa, of fluid at rest density
@@ -286,7 +286,11 @@ struct Scene {
 
 // Derived values, so that every reader computes them the same way.
 float supportRadius(const Scene&);              // m
-float particleMass(const Scene&);               // kg; in two dimensions of a slab one spacing thick
+// What has a depth is measured per metre of it in two dimensions: masses in kg/m, forces in N/m, energies in
+// J/m. This is the unit's name there.
+std::string perDepth(const std::string& unit, int dimensions);
+double particleVolume(const Scene&);            // m^3; in two dimensions m^2
+float particleMass(const Scene&);               // kg; in two dimensions kg/m
 // Whether density follows the continuity equation from step to step, instead of being summed up anew.
 bool carriesDensity(const Scene&);
 // Whether there is velocity transfer or buoyancy.

@@ -279,7 +279,9 @@ void visitMembers(S& list, const std::string& path, Visitor&& visit) {
 template <class C, class Visitor>
 void visitContact(C& c, Visitor&& visit) {
     visit("contact.influence", c.influence, Knob{"", 0.5f, 3, "of objects: fluid is kept so many times the sum of two particles' radii away", Restart});
-    visit("contact.stiffness", c.stiffness, Knob{"N/m", 0, 1e9f, "of the spring between two particles, 0 = what the time step bears"});
+    visit("contact.stiffness", c.stiffness,
+          Knob{"N/m", 0, 1e9f, "of the spring between two particles, 0 = what the time step bears; "
+                               "in two dimensions for each metre of depth"});
     visit("contact.steepness", c.steepness, Knob{"", 0, 4, "the spring is exp(steepness (1 - distance / reach)) times as stiff"});
     visit("contact.damping", c.damping, Knob{"", 0, 2, "of contacts, share of the critical one; none where a bond is broken"});
     visit("contact.shear", c.shear, Knob{"", 0, 2, "the same, of motion along the surface"});
@@ -396,7 +398,9 @@ void visitFluid(S& s, Visitor&& visit) {
     visit("fluid.rest_density", f.restDensity,
           Knob{"kg/m³", 1e-3f, 1e5f, "density at rest", Restart});
     visit("fluid.particle_mass", f.particleMass,
-          Knob{"kg", 0, 1e18f, "mass of a particle, 0 = rest density x spacing^3", Restart});
+          Knob{"kg", 0, 1e18f,
+               "mass of a particle, 0 = rest density x spacing^3; in two dimensions kg/m and "
+               "spacing^2", Restart});
     visit("fluid.sound_speed", f.soundSpeed,
           Knob{"m/s", 0, 1e4f, "speed of sound, 0 = speed_ratio x the expected speed"});
     visit("fluid.speed_ratio", f.speedRatio,

@@ -60,7 +60,6 @@ template <class Kernel> double latticeCorner(const Scene& s) {
 // Fluid on its lattice must have exactly the rest density, in the bulk and in the layer next to a wall: the mass in
 // sums (returned, kg, in two dimensions kg/m) is scaled for the one, the boundary particles' mass for the other.
 template <class Kernel> double calibrateMasses(const Scene& s, const LatticeSums& sums, Constants& c) {
-    const double scale = particleMass(s) / (double(s.fluid.restDensity) * std::pow(double(s.simulation.spacing), 3));
     if (s.simulation.formulation == Formulation::Classic) {
         c.selfWeight = 0;
         c.wallFactor = real(1.4);
@@ -73,8 +72,7 @@ template <class Kernel> double calibrateMasses(const Scene& s, const LatticeSums
     c.selfWeight = 1;
     c.wallMassFloor = 1;
     c.wallFactor = real(wall / bulk);
-    const double thickness = s.simulation.dimensions == 2 ? double(s.simulation.spacing) : 1;
-    return particleMass(s) / (scale * bulk * thickness);
+    return double(s.fluid.restDensity) * particleVolume(s) / bulk;
 }
 
 inline void slideFace(const Scene& s, Vec3 size, Constants& c) {

@@ -9,6 +9,7 @@ template <class Device> Measurement SimulationOn<Device>::measure() {
     const double count = fluidCount_, n = t.mass, mass = particleMass(scene_);   // n particles of the scene's fluid are as heavy
     const Vec3d center = (1 / n) * Vec3d{t.position[0], t.position[1], t.position[2]};
     Measurement m;
+    m.dimensions = scene_.simulation.dimensions;
     m.time = state.time, m.dt = hasLocalSteps() ? state.longest : state.dt, m.steps = state.steps;
     m.evaluations = hasLocalSteps() ? state.evaluations : count * double(state.steps);
     m.kineticEnergy = mass * t.speed2 / 2;

@@ -23,7 +23,7 @@ public:
     virtual ~ObjectDriver() = default;
     // Simulated time between exchanges, s; above 0. An exchange is made at the end of the step that reaches its time.
     virtual double interval() const = 0;
-    // `forces`: on each particle of all objects, in the order of sampleObjects() (scene/sample_object.h): means since the last exchange, N, of
+    // `forces`: on each particle of all objects, in the order of sampleObjects() (scene/sample_object.h): means since the last exchange, N, in two dimensions N/m, of
     // contacts with fluid and objects. `positions` (m, world coordinates) and `velocities` (m/s): come as they are, go as they shall be at
     // time + interval(). Sizes must stay. Called by the thread that steps.
     virtual void exchange(double time, const std::vector<Vec3d>& forces, std::vector<Vec3d>& positions, std::vector<Vec3d>& velocities) = 0;

@@ -6,7 +6,7 @@
 
 namespace spindrift::LANES {
 
-// In two dimensions of a slab one spacing thick.
+// In two dimensions of a metre of depth.
 struct RigidBody {
     double mass;                         // kg, 0: moves as prescribed
     Vec3d centre, inverseInertia[3];     // m, of mass, from its middle; 1/(kg m^2) about that, row by row; in its own axes

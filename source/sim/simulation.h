@@ -23,7 +23,7 @@ struct PlanRow { std::string name, skipped; };
 // Where the values of the vertices lie, a few outliers on either side left out (0.5 % each): what a colour scale needs.
 struct Range { float min, max; };
 
-// What fluid does to a solid, and where it is. N and N m; in two dimensions on a slab one spacing thick.
+// What fluid does to a solid, and where it is. N and N m; in two dimensions per metre of depth.
 struct SolidMeasurement {
     std::string name;                      // the scene's, or solid0, solid1, ...
     Vec3d position;                        // m, of its middle, world coordinates
@@ -35,8 +35,10 @@ struct SolidMeasurement {
 // Where a solid is: its middle, m from the domain's lower corner, and its axes, of length 1.
 struct SolidPose { Vec3d middle, axis[3]; };
 
-// What a run says of itself. Energies in J, momentum in kg m/s, lengths in m; sums in double precision.
+// What a run says of itself. Energies in J, momentum in kg m/s, in two dimensions per metre of depth;
+// lengths in m; sums in double precision.
 struct Measurement {
+    int dimensions = 3;
     double time = 0;                 // s
     double dt = 0;                   // s, the last step
     int64_t steps = 0;

@@ -168,7 +168,7 @@ void passTimes(const Ui& ui) {
 
 void curves(Ui& ui) {
     const History& h = ui.player.history();
-    plot("energy", "J", h.time,
+    plot("energy", perDepth("J", h.dimensions).c_str(), h.time,
          {{"total", h.total, IM_COL32(240, 240, 245, 255)},
           {"kinetic", h.kinetic, IM_COL32(96, 180, 255, 255)},
           {"potential", h.potential, IM_COL32(255, 190, 90, 255)}});
@@ -319,10 +319,7 @@ void pickedSolid(const Ui& ui) {
     if (ui.pickedSolid < 0 || index >= solids.size()) return;
     const SolidMeasurement& s = solids[index];
     const Scene& scene = ui.player.scene;
-    const bool flat = scene.simulation.dimensions == 2;
-    const char* perMetre = flat ? "/m" : "";
-    const double depth =
-        flat ? scene.simulation.spacing : 1;  // measured on a slab of that thickness
+    const auto unit = [&](const char* of) { return perDepth(of, scene.simulation.dimensions); };
     const auto vec = [](Vec3d v) {
         return fmt::format("{:.4g}  {:.4g}  {:.4g}", v.x + 0.0, v.y + 0.0, v.z + 0.0);
     };
@@ -335,11 +332,11 @@ void pickedSolid(const Ui& ui) {
     row("middle", "{} m", vec(s.position));
     row("velocity", "{} m/s", vec(s.velocity));
     row("spin", "{} rad/s", vec(s.spin));
-    row("force", "{} N{}", vec((1 / depth) * (s.pressureForce + s.viscousForce)), perMetre);
-    row("of it viscous", "{} N{}", vec((1 / depth) * s.viscousForce), perMetre);
-    row("torque", "{} N m{}", vec((1 / depth) * s.torque), perMetre);
+    row("force", "{} {}", vec(s.pressureForce + s.viscousForce), unit("N"));
+    row("of it viscous", "{} {}", vec(s.viscousForce), unit("N"));
+    row("torque", "{} {}", vec(s.torque), unit("N m"));
     if (scene.solids[index].floats())
-        row("mass", "{:.4g} kg{}", massOf(scene, scene.solids[index]).mass / depth, perMetre);
+        row("mass", "{:.4g} {}", massOf(scene, scene.solids[index]).mass, unit("kg"));
     else
         row("mass", "none: it moves as prescribed");
     ImGui::End();

@@ -39,6 +39,7 @@ void History::add(const Measurement& m) {
     const double values[] = {m.time, m.kineticEnergy, m.potentialEnergy,
                              m.kineticEnergy + m.potentialEnergy, m.densityError};
     for (size_t c = 0; c < std::size(curves); ++c) curves[c]->push_back(float(values[c]));
+    dimensions = m.dimensions;
 }
 
 void History::dropAfter(double t) {

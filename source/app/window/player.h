@@ -15,6 +15,7 @@ namespace spindrift {
 // Curves over the whole run, evenly spaced; when they grow long every second sample goes.
 struct History {
     std::vector<float> time, kinetic, potential, total, densityError;  // s, J, J, J, 1
+    int dimensions = 3;                                                // in two J/m
     void add(const Measurement&);
     void dropAfter(double time);   // the run has gone back to it
 

@@ -199,8 +199,10 @@ void Ui::saveCurves() {
 }
 
 std::string csvOf(const History& h) {
-    std::string text =
-        "time [s],kinetic energy [J],potential energy [J],total energy [J],mean density error\n";
+    std::string text = "time [s]";
+    for (const char* form : {"kinetic", "potential", "total"})
+        text += fmt::format(",{} energy [{}]", form, perDepth("J", h.dimensions));
+    text += ",mean density error\n";
     for (size_t i = 0; i < h.time.size(); ++i)
         text += fmt::format("{},{},{},{},{}\n", h.time[i], h.kinetic[i], h.potential[i], h.total[i],
                             h.densityError[i]);

@@ -131,6 +131,10 @@ TEST(Curves, AreSavedWithUnits) {
     EXPECT_EQ(csvOf(history),
               "time [s],kinetic energy [J],potential energy [J],total energy [J],mean density "
               "error\n0.5,1,2,3,0.01\n");
+    m.dimensions = 2, m.time = 1;
+    history.add(m);
+    EXPECT_NE(csvOf(history).find("kinetic energy [J/m],potential energy [J/m],total energy [J/m],"),
+              std::string::npos);
 }
 
 }  // namespace

@@ -89,6 +89,32 @@ TEST_F(Checkpoints, ReadsWhatWasWrittenBitByBit) {
     EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1) << "leaves something beside it";
 }
 
+// In two dimensions what has a depth was of a slab one spacing thick until version 4, and is of a metre since then.
+TEST_F(Checkpoints, OlderOnesInTwoDimensionsAreSpreadOverAMetre) {
+    scene.solids.resize(1);
+    scene.solids[0].density = 500;
+    scene.fluid.particleMass = 0.5f, scene.contact.stiffness = 8;
+    state.solids.resize(1);
+    state.solids[0].angularMomentum = {0, 0, 3};
+    for (const int dimensions : {2, 3})
+        for (const double version : {4.0, 5.0}) {
+            scene.simulation.dimensions = dimensions;
+            state.particles.solidSizes = {10};
+            writeCheckpoint(file, scene, state, {{0, 4, 2, 0}});
+            const hid_t old = H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+            const hid_t attribute = H5Aopen(old, "version", H5P_DEFAULT);
+            H5Awrite(attribute, H5T_NATIVE_DOUBLE, &version);
+            H5Aclose(attribute), H5Fclose(old);
+            const Checkpoint read = readCheckpoint(file);
+            const double per = dimensions == 2 && version < 5 ? 1 / scene.simulation.spacing : 1;
+            EXPECT_NEAR(read.state.solids[0].angularMomentum.z, 3 * per, 1e-4);
+            EXPECT_NEAR(double(read.scene.fluid.particleMass), 0.5 * per, 1e-4);
+            EXPECT_NEAR(double(read.scene.contact.stiffness), 8 * per, 1e-3);
+            EXPECT_NEAR(double(read.curves.at(0).kineticEnergy), 4 * per, 1e-3);
+            EXPECT_NEAR(double(read.curves.at(0).potentialEnergy), 2 * per, 1e-3);
+        }
+}
+
 TEST_F(Checkpoints, TruncatedFilesAreRefused) {
     writeCheckpoint(file, scene, state);
     const std::string whole = bytesOf(file), part = (folder / "part.h5").string();

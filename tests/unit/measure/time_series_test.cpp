@@ -9,6 +9,7 @@
 #include <cmath>
 #include <filesystem>
 #include <sstream>
+#include <tuple>
 
 #include <unistd.h>
 
@@ -67,6 +68,29 @@ TEST(TimeSeries, CsvHasUnitsAndEqualRows) {
                   std::count(lines[0].begin(), lines[0].end(), ','))
             << line;
     EXPECT_TRUE(lines[2].ends_with(",0,2")) << "ms of one run of a pass: " << lines[2];
+}
+
+// What has a depth says in two dimensions that it is per metre of it, in every format; the rest does not.
+TEST(TimeSeries, UnitsArePerMetreOfDepthInTwoDimensions) {
+    for (const int dimensions : {2, 3}) {
+        Measurement m;
+        m.dimensions = dimensions;
+        m.solids.push_back({"wall", {}, {}, {}, {}, {}, {}});
+        TimeSeries series(std::vector<Column>{{"gauge.height", "m"}, {"gauge.pressure", "Pa"}});
+        series.add(m, {}, {0, 0});
+        const std::string header = linesOf(series.csv())[0] + ",", json = series.json();
+        for (const auto& [name, unit, hasDepth] : std::vector<std::tuple<std::string, std::string, bool>>{
+                 {"kinetic_energy", "J", true}, {"potential_energy", "J", true},
+                 {"momentum_x", "kg m/s", true}, {"momentum_z", "kg m/s", true},
+                 {"wall.pressure_force_x", "N", true}, {"wall.viscous_force_y", "N", true},
+                 {"wall.torque_z", "N m", true}, {"wall.velocity_x", "m/s", false},
+                 {"mean_density", "kg/m³", false}, {"center_of_mass_x", "m", false},
+                 {"gauge.height", "m", false}, {"gauge.pressure", "Pa", false}}) {
+            const std::string expected = unit + (hasDepth && dimensions == 2 ? "/m" : "");
+            EXPECT_NE(header.find("," + name + " [" + expected + "],"), std::string::npos) << name;
+            EXPECT_NE(json.find("\"" + name + "\", \"unit\": \"" + expected + "\"}"), std::string::npos) << name;
+        }
+    }
 }
 
 TEST(TimeSeries, JsonIsValidAndHasNullForNoNumber) {

@@ -117,10 +117,9 @@ struct BruteForce {
 
     BruteForce(const Scene& s, const Placement& p) {
         const int dim = s.simulation.dimensions;
-        const double thickness = dim == 2 ? s.simulation.spacing : 1;
         const double R = supportRadius(s), h = R / 2, rho0 = s.fluid.restDensity;
         const Moments moments = latticeMoments(s);
-        const double m = particleMass(s) / (moments.kernel * thickness);
+        const double m = particleMass(s) / moments.kernel;
         const double exactGradient = moments.kernel / moments.gradient;
         const double c = s.fluid.soundSpeed, k = rho0 * c * c / s.fluid.gamma;
         const size_t n = p.positions.size();
@@ -159,7 +158,7 @@ struct BruteForce {
     static Moments latticeMoments(const Scene& s) {
         const double ratio = s.simulation.support;
         const int dim = s.simulation.dimensions, across = dim == 3 ? 4 : 0;
-        const double scale = particleMass(s) / (s.fluid.restDensity * std::pow(double(s.simulation.spacing), 3));
+        const double scale = particleMass(s) / (s.fluid.restDensity * std::pow(double(s.simulation.spacing), dim));
         Moments m;
         for (int z = -across; z <= across; ++z)
             for (int y = -4; y <= 4; ++y)
