@@ -1,6 +1,7 @@
 #include "scene/check.h"
 
 #include "core/error.h"
+#include "scene/check_methods.h"
 #include "scene/check_things.h"
 #include "scene/convex.h"
 #include "scene/json.h"
@@ -85,23 +86,6 @@ void checkDomain(const Scene& scene) {
         refuse("simulation.support",
                fmt::format("{} leaves particles without neighbours; use {} to 6",
                            scene.simulation.support, SmallestSupport));
-    const bool cube = size.x == size.y && size.y == size.z;
-    if (scene.simulation.formulation == Formulation::Classic && !cube)
-        refuse("domain",
-               "the classic formulation needs a cube; give domain.max - domain.min three equal "
-               "sides, or "
-               "use simulation.formulation wcsph");
-    if (scene.simulation.formulation == Formulation::Classic && scene.time.integrator != Integrator::SymplecticEuler)
-        refuse("time.integrator", "the classic formulation is stepped by symplectic_euler; use that, or simulation.formulation wcsph");
-    const bool several = isMixture(scene) || scene.simulation.pressureForm == PressureForm::Mean ||
-                         std::any_of(scene.solids.begin(), scene.solids.end(), [](const Solid& s) { return s.floats(); });
-    if (scene.time.integrator == Integrator::Split && (scene.simulation.formulation != Formulation::DeltaSph || several))
-        refuse("time.integrator", "split is for delta_sph, one fluid, pressure_form squares, and nothing that floats; use symplectic_euler");
-    if (scene.time.mode == TimeMode::Local && (shiftsParticles(scene) || scene.time.integrator != Integrator::SymplecticEuler))
-        refuse("time.mode", "local steps need time.integrator symplectic_euler and a formulation that doesn't shift particles; use cfl, or those");
-    const bool periodic = scene.domain.periodicX || scene.domain.periodicY || scene.domain.periodicZ;
-    if (scene.simulation.formulation == Formulation::Classic && (dimensions == 2 || periodic))
-        refuse("simulation.formulation", "the classic one has three dimensions and walls all round; use wcsph");
 }
 
 // Shifting spreads particles evenly over all the space it finds, and the pressure's gradient does not feel a surface.
@@ -121,8 +105,6 @@ void checkRareForces(const Scene& scene) {
     const Fluid& f = scene.fluid;
     const Formulation formulation = scene.simulation.formulation;
     const char* name = enumNames(Formulation())[size_t(formulation)];
-    if (formulation != Formulation::Wcsph && scene.simulation.pressureForm == PressureForm::Mean)
-        refuse("simulation.pressure_form", fmt::format("mean is one of wcsph; {} has its own, use squares", name));
     if (formulation != Formulation::Wcsph && f.airDensity > 0)
         refuse("fluid.air_density", fmt::format("who is at the surface is known by summed densities, which {} does not have; use wcsph, or 0", name));
     const bool alone = formulation == Formulation::Classic || formulation == Formulation::TransportVelocity;
@@ -133,8 +115,6 @@ void checkRareForces(const Scene& scene) {
     if (several && formulation != Formulation::Wcsph && formulation != Formulation::DeltaSph)
         refuse("fluid.bodies", fmt::format("are of several fluids, which {} does not have; use wcsph or delta_sph, or leave rest_density and "
                                            "viscosity of the bodies out", name));
-    if (several && scene.simulation.pressureForm == PressureForm::Mean)
-        refuse("simulation.pressure_form", "mean is for one fluid; use squares");
     if (several && f.bodies.size() > 65535) refuse("fluid.bodies", "are more than the 65535 that a mixture can have; join some");
     for (size_t b = 0; b < f.bodies.size(); ++b)
         if (restDensity(scene, f.bodies[b]) < 0.01f * f.restDensity || restDensity(scene, f.bodies[b]) > 100 * f.restDensity)
@@ -436,6 +416,7 @@ void checkScene(const Scene& scene, const std::string& place, std::optional<Part
     requireRanges(scene, place);
     try {
         checkDomain(scene);
+        checkMethods(scene);
         if (scene.fluid.bodies.empty())
             refuse("fluid.bodies", "is empty; add a body of fluid, e.g. {\"shape\": \"block\"}");
         for (size_t b = 0; b < scene.fluid.bodies.size(); ++b) checkBody(scene, b);
