@@ -183,6 +183,12 @@ void addKnobOptions(CLI::App& command, std::vector<KnobChoice>& choices) {
             choices.push_back({"--headless", "output.headless", "true"});
         },
         "runs without a window");
+    command.add_flag_callback(
+        "--strict",
+        [&] {
+            choices.push_back({"--strict", "output.strict", "true"});
+        },
+        "results outside the validity of the method end a run without a window, exit code 10");
     addSetOption(command, choices);
 }
 

@@ -70,7 +70,8 @@ std::vector<CurvePoint> curvesOf(const SeriesTable& series, int dimensions) {
     constexpr const char* Names[] = {"time", "kinetic_energy", "potential_energy", "density_error"};
     for (size_t k = 0; k < 4; ++k)
         if (!(places[k] = find(series.columns, Names[k]))) return {};
-    if (series.columns[*places[1]].unit != perDepth("J", dimensions)) return {};   // an older program's
+    // An older program's has another one.
+    if (series.columns[*places[1]].unit != perDepth("J", dimensions)) return {};
     std::vector<CurvePoint> curves;
     for (const std::vector<double>& row : series.rows)
         curves.push_back({float(row[*places[0]]), float(row[*places[1]]), float(row[*places[2]]),

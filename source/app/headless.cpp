@@ -12,6 +12,7 @@
 #include "measure/probes.h"
 #include "measure/save_particles.h"
 #include "measure/series_files.h"
+#include "measure/validity.h"
 #include "render/egl_context.h"
 
 #include <fmt/format.h>
@@ -107,7 +108,9 @@ double asWritten(float value) { return std::stod(fmt::format("{}", value)); }
 class HeadlessRun {
 public:
     HeadlessRun(const Start& start, bool quiet)
-        : scene_(start.scene), view_(start.view), window_(start.window), quiet_(quiet), progress_(!quiet), probes_(start.scene) {
+        : scene_(start.scene), view_(start.view), window_(start.window), quiet_(quiet), progress_(!quiet), probes_(start.scene),
+          validity_(start.scene) {
+        if (isInvalid()) throw Error(Exit::Invalid, refusal());
         requireOutputs(scene_.output, start);
         const Output& output = scene_.output;
         if (!output.screenshot.empty() || !output.frames.empty()) {
@@ -130,8 +133,9 @@ public:
 
     int run() {
         try {
+            judge();
             record();
-            while (!done() && trouble_.empty() && stopSignal == 0) advance();
+            while (!done() && trouble_.empty() && !isInvalid() && stopSignal == 0) advance();
             progress_.clear();
             finish();
         } catch (...) {   // a GPU was lost, a disk is full: what was measured until then is kept
@@ -146,9 +150,13 @@ public:
             fmt::print(stderr, "spindrift: stopped by a signal after {} steps\n", steps_ - first_);
             return 128 + stopSignal;
         }
-        if (trouble_.empty()) return int(Exit::Ok);
-        fmt::print(stderr, "spindrift: {}\n", trouble_);
-        return int(Exit::Diverged);
+        if (!trouble_.empty()) {
+            fmt::print(stderr, "spindrift: {}\n", trouble_);
+            return int(Exit::Diverged);
+        }
+        if (!isInvalid()) return int(Exit::Ok);
+        fmt::print(stderr, "spindrift: {}\n", refusal());
+        return int(Exit::Invalid);
     }
 
 private:
@@ -173,7 +181,7 @@ private:
         if (look) {
             now_ = simulation_->measure();
             lookAfterIt();
-            if (trouble_.empty()) record();
+            if (trouble_.empty()) judge(), record();
             if (progress_.due()) progress_.show(share(), describe());
         }
         series_->keepUp();
@@ -190,7 +198,20 @@ private:
         }
         if (found != HealthGuard::Finding::WentBack) return;
         steps_ = now_.steps;
+        validity_.dropAfter(now_.time);
         for (Recorder& recorder : recorders_) recorder.goBack(now_.time);
+    }
+
+    void judge() {
+        validity_.look(now_);
+        if (hasRows())
+            for (const Remark& r : validity_.remarks()) series_->remark(r.time, r.text);
+    }
+    bool isInvalid() const { return scene_.output.strict && !validity_.remarks().empty(); }
+    std::string refusal() const {
+        const size_t more = validity_.remarks().size() - 1;
+        return fmt::format("outside its validity (output.strict): {}{}", validity_.remarks()[0].text,
+                           more > 0 ? fmt::format("; and {} more", more) : "");
     }
 
     double share() const {
@@ -281,6 +302,7 @@ private:
         const Output& output = scene_.output;
         now_ = simulation_->measure();
         if (trouble_.empty()) trouble_ = divergence(scene_, now_);
+        judge();
         if (hasRows() && series_->lastTime() < now_.time) addRow();
         series_->finish();
         if (!output.checkpoint.empty() && trouble_.empty())
@@ -290,6 +312,9 @@ private:
         if (!output.particles.empty() && trouble_.empty()) saveParticles(output.particles, simulation_->particles());
         if (!output.screenshot.empty()) pictures_->save(*simulation_, scene_, output.screenshot);
         if (!quiet_) summarise();
+        else if (!isInvalid())
+            for (const Remark& r : validity_.remarks())
+                fmt::print(stderr, "spindrift: {}\n", r.text);
     }
 
     void summarise() const {
@@ -317,6 +342,7 @@ private:
                    joule, now_.potentialEnergy, joule);
         fmt::print(out, "density error  {:.3g} % mean, {:.3g} % largest\n", 100 * now_.densityError,
                    100 * now_.maxDensityError);
+        for (const Remark& r : validity_.remarks()) fmt::print(out, "not valid      {}\n", r.text);
         if (guard_->retries() > 0) fmt::print(out, "went back      {} times, on with shorter steps\n", guard_->retries());
         if (!output.checkpoint.empty())
             fmt::print(out, "checkpoint     {}{}\n", output.checkpoint, trouble_.empty() ? "" : ", from before the trouble");
@@ -336,6 +362,7 @@ private:
         pictures_;  // before the simulation: no display is noticed before work begins
     std::unique_ptr<Simulation> simulation_;
     Probes probes_;
+    Validity validity_;
     std::optional<HealthGuard> guard_;
     std::optional<SeriesFiles> series_;
     std::vector<Recorder> recorders_;

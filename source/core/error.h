@@ -17,6 +17,7 @@ enum class Exit {
     Memory = 7,         // the scene needs more memory than there is
     Diverged = 8,       // the physics blew up (health guard)
     DeviceLost = 9,     // a GPU failed during the run
+    Invalid = 10,       // a result is outside the validity of the method, and output.strict is on
     Internal = 70,      // a bug of ours
 };
 

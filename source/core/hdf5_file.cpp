@@ -69,35 +69,57 @@ void writeArray(hid_t file, const std::string& name, hid_t stored, hid_t native,
     if (size[0] > 0) require(H5Dwrite(set, native, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), name);
 }
 
-void writeUnit(hid_t file, const std::string& name, const std::string& unit) {
-    if (unit.empty()) return;
-    Handle set(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, name);
+namespace {
+
+// Text as an attribute of a file or a dataset; none when it is empty.
+void writeAttribute(hid_t of, const std::string& name, const std::string& text) {
+    if (text.empty()) return;
     Handle space(H5Screate(H5S_SCALAR), H5Sclose, name);
     Handle type(H5Tcopy(H5T_C_S1), H5Tclose, name);
-    require(H5Tset_size(type, unit.size()), name);
+    require(H5Tset_size(type, text.size()), name);
     require(H5Tset_cset(type, H5T_CSET_UTF8), name);
-    Handle attribute(H5Acreate2(set, "unit", type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, name);
-    require(H5Awrite(attribute, type, unit.data()), name);
+    const hid_t made = H5Acreate2(of, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT);
+    Handle attribute(made, H5Aclose, name);
+    require(H5Awrite(attribute, type, text.data()), name);
+}
+
+// Of fixed or variable length; empty where there is none. `what` is what can't be read.
+std::string readAttribute(hid_t of, const std::string& name, const std::string& what) {
+    if (H5Aexists(of, name.c_str()) <= 0) return "";
+    Handle attribute(H5Aopen(of, name.c_str(), H5P_DEFAULT), H5Aclose, what);
+    Handle type(H5Aget_type(attribute), H5Tclose, what);
+    Handle space(H5Aget_space(attribute), H5Sclose, what);
+    if (H5Tget_class(type) != H5T_STRING || H5Sget_simple_extent_npoints(space) != 1)
+        throw Trouble{what};
+    if (H5Tis_variable_str(type) <= 0) {
+        std::string text(H5Tget_size(type), 0);
+        require(H5Aread(attribute, type, text.data()), what);
+        return text.c_str();  // padded with zeros
+    }
+    char* text = nullptr;
+    require(H5Aread(attribute, type, &text), what);
+    const std::string read = text ? text : "";
+    H5free_memory(text);
+    return read;
+}
+
+}  // namespace
+
+void writeUnit(hid_t file, const std::string& name, const std::string& unit) {
+    Handle set(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, name);
+    writeAttribute(set, "unit", unit);
 }
 
 std::string readUnit(hid_t file, const std::string& name) {
     Handle set(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, name);
-    if (H5Aexists(set, "unit") <= 0) return "";
-    Handle attribute(H5Aopen(set, "unit", H5P_DEFAULT), H5Aclose, name);
-    Handle type(H5Aget_type(attribute), H5Tclose, name);
-    Handle space(H5Aget_space(attribute), H5Sclose, name);
-    if (H5Tget_class(type) != H5T_STRING || H5Sget_simple_extent_npoints(space) != 1)
-        throw Trouble{name + "'s unit"};
-    if (H5Tis_variable_str(type) <= 0) {
-        std::string text(H5Tget_size(type), 0);
-        require(H5Aread(attribute, type, text.data()), name);
-        return text.c_str();  // padded with zeros
-    }
-    char* text = nullptr;
-    require(H5Aread(attribute, type, &text), name);
-    const std::string unit = text ? text : "";
-    H5free_memory(text);
-    return unit;
+    return readAttribute(set, "unit", name + "'s unit");
+}
+
+void writeText(hid_t file, const std::string& name, const std::string& text) {
+    writeAttribute(file, name, text);
+}
+std::string readText(hid_t file, const std::string& name) {
+    return readAttribute(file, name, name);
 }
 
 void writeNumbers(hid_t file, const std::string& name, const std::string& unit, const std::vector<double>& values) {

@@ -49,6 +49,9 @@ void writeArray(hid_t file, const std::string& name, hid_t stored, hid_t native,
 void writeUnit(hid_t file, const std::string& name, const std::string& unit);
 // That text, of fixed or variable length; empty where there is none.
 std::string readUnit(hid_t file, const std::string& name);
+// Text as an attribute of the file; none when it is empty.
+void writeText(hid_t file, const std::string& name, const std::string& text);
+std::string readText(hid_t file, const std::string& name);
 // A dataset of one dimension, float64.
 void writeNumbers(hid_t file, const std::string& name, const std::string& unit, const std::vector<double>& values);
 

@@ -40,6 +40,10 @@ void readCsv(const std::string& text, SeriesTable& table) {
     std::getline(stream, line);
     for (const std::string& cell : cellsOf(line)) table.columns.push_back(columnOf(cell));
     while (std::getline(stream, line)) {
+        if (line.starts_with("# ")) {
+            table.remarks.push_back({table.rows.size(), line.substr(2)});
+            continue;
+        }
         std::vector<double>& row = table.rows.emplace_back();
         for (const std::string& cell : cellsOf(line)) {
             char* end = nullptr;
@@ -53,6 +57,8 @@ void readJson(const std::string& text, SeriesTable& table) {
     try {
         const auto json = nlohmann::json::parse(text);
         for (const auto& c : json.at("columns")) table.columns.push_back({c.at("name"), c.at("unit")});
+        for (const auto& r : json.value("remarks", nlohmann::json::array()))
+            table.remarks.push_back({r.at("row"), r.at("text")});
         for (const auto& values : json.at("rows")) {
             std::vector<double>& row = table.rows.emplace_back();
             for (const auto& value : values) row.push_back(value.is_null() ? std::nan("") : value.get<double>());
@@ -69,6 +75,10 @@ void readHdf5(SeriesTable& table) {
             table.rows.resize(std::max(table.rows.size(), values.size()));
             for (size_t r = 0; r < values.size(); ++r) table.rows[r].push_back(values[r]);
         }
+        std::istringstream remarks(hdf5::readText(file, Remarks));
+        for (std::string line; std::getline(remarks, line);)
+            table.remarks.push_back(
+                {size_t(std::atoll(line.c_str())), line.substr(line.find(' ') + 1)});
     } catch (const hdf5::Trouble&) { refuse(table.path, "it is no time series"); }
 }
 
@@ -102,6 +112,7 @@ SeriesTable rowsBefore(const Measurement& now, SeriesTable table) {
             refuse(table.path, fmt::format("it is another run's, at step {:.0f} after {:.6g} s, but this one goes on from step {} after {:.6g} s",
                                            row[step], row[time], now.steps, now.time));
     std::erase_if(table.rows, isBehind);
+    std::erase_if(table.remarks, [&](const SeriesRemark& r) { return r.row > table.rows.size(); });
     if (!table.rows.empty() && table.rows.back()[step] == double(now.steps)) table.rows.back()[time] = now.time;   // with all digits
     return table;
 }

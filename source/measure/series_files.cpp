@@ -40,6 +40,12 @@ void SeriesFiles::add(const Measurement& m, const std::vector<PassTime>& passes,
     else if (!csv_.empty()) csvFile_.emplace(csv_, series_.csv());
 }
 
+void SeriesFiles::remark(double time, const std::string& text) {
+    if (!series_.remark(time, text)) return;
+    changed_ = true;
+    if (csvFile_) csvFile_->append("# " + text + "\n");
+}
+
 void SeriesFiles::keepUp() {
     if (changed_ && Clock::now() >= due_) replace(false);
 }

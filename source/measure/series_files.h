@@ -17,6 +17,8 @@ public:
     // A run that goes on from a checkpoint begins with the rows that its files have up to there.
     SeriesFiles(const Output&, std::vector<Column> more, const std::vector<PlanRow>& plan, const Measurement* goesOnFrom);
     void add(const Measurement&, const std::vector<PassTime>& passes, const std::vector<double>& more);
+    // Once for each key; see TimeSeries.
+    void remark(double time, const std::string& text);
     // To be called often: replaces what is due.
     void keepUp();
     // The run has gone back to this time, s.

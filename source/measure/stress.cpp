@@ -274,7 +274,8 @@ bool turnFluids(Scene& s, uint64_t seed) {
             body.restDensity = f.restDensity * dice.logarithmic(0.2, 5);
             if (dice.oneIn(2)) body.viscosity = dice.oneIn(4) ? 0 : body.restDensity * dice.logarithmic(1e-6, 1e-1);
         }
-    const bool mayMeet = carried && s.walls.kind == WallKind::Reflect;   // which that kernel does not bear
+    // Which Mueller's kernels don't bear.
+    const bool mayMeet = carried && s.walls.kind == WallKind::Reflect;
     if (dice.oneIn(8) && !mayMeet) s.simulation.kernel = Kernel::Mueller;
     if (!dice.oneIn(3) || s.simulation.formulation > Formulation::DeltaPlus) return true;
     const float size = length(s.domain.max - s.domain.min), rate = std::sqrt(9.81f / size);   // 1/s

@@ -5,7 +5,10 @@
 #include "core/output_file.h"
 #include "core/units.h"
 
+#include "measure/validity.h"
+
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -41,7 +44,11 @@ constexpr Quantity Quantities[] = {
     {"evaluations", "", [](const Measurement& m) { return m.evaluations; }},   // of a particle's forces, since the beginning
 };
 
-struct SolidQuantity { const char *name, *unit; Vec3d SolidMeasurement::*of; bool hasDepth = false; };
+struct SolidQuantity {
+    const char *name, *unit;
+    Vec3d SolidMeasurement::*of;
+    bool hasDepth = false;
+};
 constexpr SolidQuantity SolidQuantities[] = {{"position", "m", &SolidMeasurement::position},
                                              {"velocity", "m/s", &SolidMeasurement::velocity},
                                              {"spin", "rad/s", &SolidMeasurement::spin},
@@ -51,11 +58,14 @@ constexpr SolidQuantity SolidQuantities[] = {{"position", "m", &SolidMeasurement
 
 // Calls f(name, unit, value) for each column but those of passes.
 template <class F> void forValues(const Measurement& m, const F& f) {
-    const auto unitOf = [&](const auto& q) { return q.hasDepth ? perDepth(q.unit, m.dimensions) : q.unit; };
+    const auto unitOf = [&](const auto& q) {
+        return q.hasDepth ? perDepth(q.unit, m.dimensions) : q.unit;
+    };
     for (const Quantity& q : Quantities) f(q.name, unitOf(q), q.of(m));
     for (const SolidMeasurement& s : m.solids)
         for (const SolidQuantity& q : SolidQuantities)
-            for (int k = 0; k < 3; ++k) f(fmt::format("{}.{}_{}", s.name, q.name, "xyz"[k]), unitOf(q), (s.*q.of)[k]);
+            for (int k = 0; k < 3; ++k)
+                f(fmt::format("{}.{}_{}", s.name, q.name, "xyz"[k]), unitOf(q), (s.*q.of)[k]);
 }
 
 }  // namespace
@@ -68,7 +78,9 @@ TimeSeries::TimeSeries(std::vector<Column> more, const std::vector<PlanRow>& pla
 }
 
 void TimeSeries::chooseColumns(const Measurement& m) {
-    forValues(m, [&](const std::string& name, const std::string& unit, double) { columns_.push_back({name, unit}); });
+    forValues(m, [&](const std::string& name, const std::string& unit, double) {
+        columns_.push_back({name, unit});
+    });
     columns_.insert(columns_.end(), more_.begin(), more_.end());
     columns_.insert(columns_.end(), passes_.begin(), passes_.end());
 }
@@ -89,13 +101,16 @@ void TimeSeries::goOn(const Measurement& now, const SeriesTable& earlier) {
         std::vector<double>& row = rows_.emplace_back(columns_.size(), std::nan(""));
         for (size_t i = 0; i < places.size(); ++i) row[places[i]] = before[i];
     }
+    remarks_ = earlier.remarks;
 }
 
 void TimeSeries::add(const Measurement& m, const std::vector<PassTime>& passes, const std::vector<double>& more) {
     CHECK(more.size() == more_.size());
     if (columns_.empty()) chooseColumns(m);
     std::vector<double> row;
-    forValues(m, [&](const std::string&, const std::string&, double value) { row.push_back(value); });
+    forValues(m, [&](const std::string&, const std::string&, double value) {
+        row.push_back(value);
+    });
     row.insert(row.end(), more.begin(), more.end());
     row.resize(row.size() + passes_.size(), 0);
     row.resize(columns_.size(), std::nan(""));
@@ -104,10 +119,18 @@ void TimeSeries::add(const Measurement& m, const std::vector<PassTime>& passes, 
     rows_.push_back(std::move(row));
 }
 
+bool TimeSeries::remark(double time, const std::string& text) {
+    const auto same = [&](const SeriesRemark& r) { return keyOf(r.text) == keyOf(text); };
+    if (std::any_of(remarks_.begin(), remarks_.end(), same)) return false;
+    remarks_.push_back({rows_.size(), text, time});
+    return true;
+}
+
 size_t TimeSeries::dropAfter(double time) {
-    const size_t before = rows_.size();
+    const size_t before = rows_.size() + remarks_.size();
     while (!rows_.empty() && !(rows_.back()[0] <= time)) rows_.pop_back();   // column 0 is the time
-    return before - rows_.size();
+    std::erase_if(remarks_, [&](const SeriesRemark& r) { return r.time > time; });
+    return before - rows_.size() - remarks_.size();
 }
 
 std::string TimeSeries::csvLine(size_t row) const {
@@ -121,7 +144,11 @@ std::string TimeSeries::csv() const {
     for (const Column& c : columns_)
         text += (text.empty() ? "" : ",") + c.name + (c.unit.empty() ? "" : fmt::format(" [{}]", c.unit));
     text += "\n";
-    for (size_t r = 0; r < rows_.size(); ++r) text += csvLine(r);
+    for (size_t r = 0; r <= rows_.size(); ++r) {
+        for (const SeriesRemark& remark : remarks_)
+            if (remark.row == r) text += "# " + remark.text + "\n";
+        if (r < rows_.size()) text += csvLine(r);
+    }
     return text;
 }
 
@@ -130,7 +157,11 @@ std::string TimeSeries::json() const {
     for (size_t i = 0; i < columns_.size(); ++i)
         text += fmt::format("{}\n  {{\"name\": \"{}\", \"unit\": \"{}\"}}", i ? "," : "",
                             columns_[i].name, columns_[i].unit);
-    text += "],\n\"rows\": [";
+    text += "],\n";
+    nlohmann::json remarks;
+    for (const SeriesRemark& r : remarks_) remarks.push_back({{"row", r.row}, {"text", r.text}});
+    if (!remarks_.empty()) text += "\"remarks\": " + remarks.dump() + ",\n";
+    text += "\"rows\": [";
     for (size_t r = 0; r < rows_.size(); ++r) {
         text += r ? ",\n  [" : "\n  [";
         for (size_t i = 0; i < columns_.size(); ++i) {
@@ -146,6 +177,9 @@ std::string TimeSeries::json() const {
 void TimeSeries::writeHdf5(const std::string& path) const {
     replaceFile(path, [&](const std::string& temporary) {
         return hdf5::writeFile(temporary, [&](hid_t file) {
+            std::string remarks;
+            for (const SeriesRemark& r : remarks_) remarks += fmt::format("{} {}\n", r.row, r.text);
+            hdf5::writeText(file, Remarks, remarks);
             std::vector<double> values(rows_.size());
             for (size_t i = 0; i < columns_.size(); ++i) {
                 for (size_t r = 0; r < rows_.size(); ++r) values[r] = rows_[r][i];

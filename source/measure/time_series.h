@@ -21,14 +21,18 @@ public:
     size_t size() const { return rows_.size(); }
     // s, of the last row; -1 when there is none.
     double lastTime() const { return rows_.empty() ? -1 : rows_.back()[0]; }
-    // Forgets the rows after this time, s: the run has gone back to it. Returns how many.
+    // A line of text among the rows: "# text" in CSV, "remarks" in JSON and HDF5. False where one
+    // with the same key, what stands before a colon, is there.
+    bool remark(double time, const std::string& text);
+    // Forgets the rows and remarks after this time, s: the run has gone back to it. Returns how
+    // many.
     size_t dropAfter(double time);
 
     // "time [s],..." then a line a row. Values that are no numbers are written as nan.
     std::string csv() const;
     std::string csvLine(size_t row) const;
     // {"columns": [{"name": "time", "unit": "s"}, ...], "rows": [[...], ...]}; no numbers become
-    // null.
+    // null. Where there are any: "remarks": [{"row": 3, "text": "..."}, ...].
     std::string json() const;
     // An HDF5 file: for each column a dataset of float64 with the attribute "unit". Throws Error (Output), and leaves what was there.
     void writeHdf5(const std::string& path) const;
@@ -38,6 +42,7 @@ private:
 
     std::vector<Column> more_, passes_, columns_;
     std::vector<std::vector<double>> rows_;
+    std::vector<SeriesRemark> remarks_;
 };
 
 }  // namespace spindrift

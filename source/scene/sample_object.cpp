@@ -110,8 +110,9 @@ struct Cells {
         };
         double volume = 1;
         for (int e = 0; e < extents; ++e) volume *= length(springs.at(corner(1 << e)) - springs.at(corner(0)));
-        // What is not a direction of the lattice is as thick as the wall, in two dimensions a metre deep.
-        const double rest = scene.simulation.dimensions == 3 || extents == 1 ? object.thickness : 1.0;
+        // What is not a direction of the lattice is as thick as the wall, in 2D a metre deep.
+        const bool flat = scene.simulation.dimensions == 2;
+        const double rest = flat && extents == 2 ? 1.0 : object.thickness;
         const double full = extents == 3 ? volume : volume * rest, a = std::pow(volume, 1.0 / extents);
         for (int c = 0; c < corners; ++c) springs.addMass(corner(c), object.density * full / corners);
         const double E = object.youngsModulus;

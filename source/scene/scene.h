@@ -118,7 +118,7 @@ struct Cut {
 // Contact of fluid with objects, and of objects with each other (discrete element method).
 struct Contact {
     float influence = 1.5f;                     // fluid is kept so many times the sum of two particles' radii away
-    float stiffness = 0;                        // N/m, 0 = what the time step bears; in two dimensions N/m/m
+    float stiffness = 0;                        // N/m, 0 = what the time step bears; in 2D N/m/m
     float steepness = 2;                        // the spring is exp(steepness (1 - distance / reach)) times as stiff
     float damping = 0.1f;                       // share of the critical one
     float shear = 0.1f;                         // the same, along the surface
@@ -176,7 +176,7 @@ struct Walls {
 
 struct Fluid {
     float restDensity = 1000;                   // kg/m³
-    float particleMass = 0;                     // kg, 0 = rest density x spacing^3; in 2D kg/m, spacing^2
+    float particleMass = 0;                     // kg, 0 = rest density x spacing^3; 2D: kg/m, dx^2
     float soundSpeed = 0;                       // m/s, 0 = speed_ratio x the expected largest speed
     float speedRatio = 10;                      // sound speed / expected largest speed
     float backgroundPressure = 0;               // Pa, of fluid at rest density
@@ -262,6 +262,7 @@ struct Output {
     std::string hdf5;                           // the time series as an HDF5 file
     float sampleEvery = 0;                      // s of simulated time between rows of the series, 0 = with the frames, by fps
     std::string particles;                      // CSV or HDF5 path: the last state, which a body of shape file can begin with
+    bool strict = false;                        // what is outside the validity of the method is an error
     std::vector<Probe> probes;
 };
 
@@ -286,8 +287,8 @@ struct Scene {
 
 // Derived values, so that every reader computes them the same way.
 float supportRadius(const Scene&);              // m
-// What has a depth is measured per metre of it in two dimensions: masses in kg/m, forces in N/m, energies in
-// J/m. This is the unit's name there.
+// What has a depth is measured per metre of it in two dimensions: masses in kg/m, forces in N/m,
+// energies in J/m. This is the unit's name there.
 std::string perDepth(const std::string& unit, int dimensions);
 double particleVolume(const Scene&);            // m^3; in two dimensions m^2
 float particleMass(const Scene&);               // kg; in two dimensions kg/m

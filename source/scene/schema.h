@@ -501,6 +501,8 @@ void visitOutput(S& s, Visitor&& visit) {
     visit("output.hdf5", o.hdf5, Knob{"", 0, 0, "HDF5 time series: a dataset with its unit for each column", Restart});
     visit("output.sample_every", o.sampleEvery,
           Knob{"s", 0, 1e6f, "simulated time between rows of the series, for impacts shorter than a frame; 0 = with the frames, by output.fps", Restart});
+    visit("output.strict", o.strict,
+          Knob{"", 0, 0, "results outside the validity of the method are an error, not a remark", Restart});
 }
 
 }  // namespace schema

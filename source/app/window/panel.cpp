@@ -154,6 +154,11 @@ void status(Ui& ui) {
     row("speed of sound", "{:.3g} m/s", m.soundSpeed);
     row("device", "{}", ui.device.substr(0, ui.device.find(',')));
     row("drawing", "{:.1f} ms a picture", ui.drawMs);
+    if (ui.player.remarks().empty()) return;
+    ImGui::PushTextWrapPos();
+    ImGui::TextColored(amber, "outside what the method is valid for:");
+    for (const Remark& r : ui.player.remarks()) ImGui::TextUnformatted(r.text.c_str());
+    ImGui::PopTextWrapPos();
 }
 
 void passTimes(const Ui& ui) {

@@ -77,6 +77,8 @@ void Player::begin(Loaded loaded, bool again) {
         history_.add(m);
     }
     history_.add(measurement_);
+    validity_ = Validity(scene);
+    validity_.look(measurement_);
     changes_.clear();
     halted.clear();
     notice = hidden;
@@ -171,8 +173,10 @@ void Player::takeMeasurement() {
         rateTime_ -= before - measurement_.time, rateSteps_ -= stepsBefore - measurement_.steps;
         inForceSince_ = std::min(inForceSince_, measurement_.time);
         history_.dropAfter(measurement_.time);
+        validity_.dropAfter(measurement_.time);
     }
     history_.add(measurement_);
+    validity_.look(measurement_);
     if (stepper_->finding() == HealthGuard::Finding::GaveUp) {
         culprits = guard.culprits();
         halt(guard.said() + ", then press R");

@@ -3,6 +3,7 @@
 #include "app/window/live_knobs.h"
 #include "app/window/loader.h"
 #include "app/window/stepper.h"
+#include "measure/validity.h"
 #include "scene/scene.h"
 
 #include <algorithm>
@@ -81,6 +82,8 @@ public:
     // Whether steps would be lost if it ended now.
     bool unsaved() const { return measurement_.steps > std::max(firstSteps_, savedSteps_); }
     const History& history() const { return history_; }
+    // What of the run is outside the validity of its method.
+    const std::vector<Remark>& remarks() const { return validity_.remarks(); }
     const Scene& loadedScene() const { return origin_.scene; }
     const std::string& file() const { return origin_.file; }
     double stepsPerSecond() const { return stepsPerSecond_; }
@@ -113,6 +116,7 @@ private:
     int64_t firstSteps_ = 0, savedSteps_ = 0;
     Measurement measurement_;
     History history_;
+    Validity validity_{Scene{}};
     bool applyWanted_ = false, underWay_ = false, stirWanted_ = false, holdWanted_ = false,
          stepWanted_ = false, collected_ = false;
     Stir stir_;

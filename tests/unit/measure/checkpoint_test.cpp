@@ -89,7 +89,8 @@ TEST_F(Checkpoints, ReadsWhatWasWrittenBitByBit) {
     EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1) << "leaves something beside it";
 }
 
-// In two dimensions what has a depth was of a slab one spacing thick until version 4, and is of a metre since then.
+// In two dimensions what has a depth was of a slab one spacing thick until version 4, and is of a
+// metre since then.
 TEST_F(Checkpoints, OlderOnesInTwoDimensionsAreSpreadOverAMetre) {
     scene.solids.resize(1);
     scene.solids[0].density = 500;

@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <sstream>
 #include <tuple>
 
@@ -56,6 +57,35 @@ TEST(TimeSeries, GoesOnHoweverUnitsWereSpelt) {
     for (const char* other : {"g/cm^3", "Pa", ""}) EXPECT_THROW(goOn(other), Error) << other;
 }
 
+// One line for each key, among the rows; who reads the file again has it at the same place.
+TEST(TimeSeries, RemarksStandOnceAmongTheRowsInEveryFormat) {
+    TimeSeries series;
+    Measurement m;
+    EXPECT_TRUE(series.remark(0, "a gap: \"narrow\""));
+    for (int k = 0; k < 4; ++k) {
+        m.time = 0.1 * k, m.steps = k;
+        EXPECT_EQ(series.remark(m.time, "Mach number: " + std::to_string(k)), k == 0);
+        if (k == 2) series.remark(m.time, "late: now");
+        series.add(m, {});
+    }
+    const std::string path = testing::TempDir() + "spindrift-remarks-" + std::to_string(getpid());
+    std::ofstream(path + ".csv") << series.csv();
+    std::ofstream(path + ".json") << series.json();
+    series.writeHdf5(path + ".h5");
+    for (const char* kind : {".csv", ".json", ".h5"}) {
+        const SeriesTable table = readSeries(path + kind);
+        EXPECT_EQ(table.rows.size(), 4u) << kind;
+        ASSERT_EQ(table.remarks.size(), 3u) << kind;
+        EXPECT_EQ(table.remarks[0].text, "a gap: \"narrow\"") << kind;
+        EXPECT_EQ(table.remarks[2].text, "late: now") << kind;
+        EXPECT_EQ(table.remarks[2].row, 2u) << kind;
+        std::filesystem::remove(path + kind);
+    }
+    EXPECT_EQ(series.dropAfter(0.1), 3u) << "two rows and a remark";
+    EXPECT_EQ(series.csv().find("late"), std::string::npos);
+    EXPECT_NE(series.csv().find("# Mach number: 0\n"), std::string::npos);
+}
+
 TEST(TimeSeries, CsvHasUnitsAndEqualRows) {
     const auto lines = linesOf(example().csv());
     ASSERT_EQ(lines.size(), 3u);
@@ -70,7 +100,7 @@ TEST(TimeSeries, CsvHasUnitsAndEqualRows) {
     EXPECT_TRUE(lines[2].ends_with(",0,2")) << "ms of one run of a pass: " << lines[2];
 }
 
-// What has a depth says in two dimensions that it is per metre of it, in every format; the rest does not.
+// What has a depth says in two dimensions that it is per metre of it, in every format.
 TEST(TimeSeries, UnitsArePerMetreOfDepthInTwoDimensions) {
     for (const int dimensions : {2, 3}) {
         Measurement m;
@@ -79,7 +109,8 @@ TEST(TimeSeries, UnitsArePerMetreOfDepthInTwoDimensions) {
         TimeSeries series(std::vector<Column>{{"gauge.height", "m"}, {"gauge.pressure", "Pa"}});
         series.add(m, {}, {0, 0});
         const std::string header = linesOf(series.csv())[0] + ",", json = series.json();
-        for (const auto& [name, unit, hasDepth] : std::vector<std::tuple<std::string, std::string, bool>>{
+        using Expected = std::tuple<std::string, std::string, bool>;
+        for (const auto& [name, unit, hasDepth] : std::vector<Expected>{
                  {"kinetic_energy", "J", true}, {"potential_energy", "J", true},
                  {"momentum_x", "kg m/s", true}, {"momentum_z", "kg m/s", true},
                  {"wall.pressure_force_x", "N", true}, {"wall.viscous_force_y", "N", true},
@@ -88,7 +119,8 @@ TEST(TimeSeries, UnitsArePerMetreOfDepthInTwoDimensions) {
                  {"gauge.height", "m", false}, {"gauge.pressure", "Pa", false}}) {
             const std::string expected = unit + (hasDepth && dimensions == 2 ? "/m" : "");
             EXPECT_NE(header.find("," + name + " [" + expected + "],"), std::string::npos) << name;
-            EXPECT_NE(json.find("\"" + name + "\", \"unit\": \"" + expected + "\"}"), std::string::npos) << name;
+            const std::string inJson = "\"" + name + "\", \"unit\": \"" + expected + "\"}";
+            EXPECT_NE(json.find(inJson), std::string::npos) << name;
         }
     }
 }
