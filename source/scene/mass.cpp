@@ -41,4 +41,41 @@ Mass massOf(const Scene& scene, const Solid& solid) {
     return {mass, centre, {{mass * (squares.y + squares.z), 0, 0}, {0, mass * (squares.z + squares.x), 0}, {0, 0, mass * (squares.x + squares.y)}}};
 }
 
+void invertTransposed(const Vec3d (&m)[3], Vec3d (&inverse)[3]) {
+    const Vec3d x = cross(m[1], m[2]), y = cross(m[2], m[0]), z = cross(m[0], m[1]);
+    const double perDeterminant = 1 / dot(m[0], x);
+    inverse[0] = perDeterminant * x, inverse[1] = perDeterminant * y, inverse[2] = perDeterminant * z;
+}
+
+// With a = w (n - mean of n) the areas close. With G = sum x (x) a they make the force -G^T g of a
+// pressure g.x: multiplied by V G^-T it is -V g.
+std::vector<Vec3d> surfaceAreas(const Scene& scene, const Solid& solid, const SolidSample& sample) {
+    const Convex shape = convexOf(solid, scene.simulation.dimensions);
+    const double outermost = 0.75 * double(scene.simulation.spacing);
+    std::vector<Vec3d> areas(sample.positions.size());
+    std::vector<double> weights(areas.size());
+    Vec3d slant{0, 0, 0};
+    double all = 1e-30;
+    auto armOf = [&](size_t i) { return toDouble(sample.positions[i] + scene.domain.min) - shape.middle; };
+    for (size_t i = 0; i < areas.size(); ++i) {
+        const auto nearest = shape.nearest(armOf(i));
+        if (-nearest.distance > outermost) continue;
+        weights[i] = sample.volumes[i];
+        areas[i] = weights[i] * nearest.normal;
+        slant = slant + areas[i], all += weights[i];
+    }
+    Vec3d moments[3] = {};
+    for (size_t i = 0; i < areas.size(); ++i) {
+        areas[i] = areas[i] - (weights[i] / all) * slant;
+        for (int k = 0; k < 3; ++k) moments[k] = moments[k] + armOf(i)[k] * areas[i];
+    }
+    if (scene.simulation.dimensions == 2) moments[2] = {0, 0, moments[0].x + moments[1].y};
+    Vec3d toVolume[3];
+    invertTransposed(moments, toVolume);
+    const double volume = massOf(scene, solid).mass / double(solid.density);
+    for (Vec3d& a : areas)
+        a = volume * Vec3d{dot(toVolume[0], a), dot(toVolume[1], a), dot(toVolume[2], a)};
+    return areas;
+}
+
 }  // namespace spindrift

@@ -262,7 +262,7 @@ private:
         if (!solid.floats()) return body;
         const Mass mass = massOf(scene, solid);
         body.mass = mass.mass, body.centre = mass.centre;
-        invert(mass.inertia, body.inverseInertia);
+        invertTransposed(mass.inertia, body.inverseInertia);
         return body;
     }
     // As if it were a cube.
@@ -272,12 +272,6 @@ private:
         for (const Vec3& p : sampleSolid(scene, solid).positions)
             outermost += -shape.nearest(toDouble(p + scene.domain.min) - shape.middle).distance <= double(deepestBall(scene));
         return std::max(1.0, outermost / (2 * scene.simulation.dimensions));
-    }
-    // Of a symmetric matrix, by cofactors.
-    static void invert(const Vec3d (&m)[3], Vec3d (&inverse)[3]) {
-        const Vec3d x = cross(m[1], m[2]), y = cross(m[2], m[0]), z = cross(m[0], m[1]);
-        const double determinant = dot(m[0], x);
-        inverse[0] = (1 / determinant) * x, inverse[1] = (1 / determinant) * y, inverse[2] = (1 / determinant) * z;
     }
     static SolidMotion motionAtHome(const Scene& scene, const Solid& solid, const RigidBody& body) {
         SolidMotion m;

@@ -27,7 +27,7 @@ template <class Device> Measurement SimulationOn<Device>::measure() {
     m.finite = t.notFinite == 0;
     if (solids_.moves()) moveSolids();   // to where the fluid is since the last step
     const std::vector<SolidState> solids = solids_.download();
-    if (solids_.count() > 0) (this->*findLoads_)();
+    if (solids_.count() > 0) findAllLoads(view());
     for (int s = 0; s < solids_.count(); ++s) {
         const SolidLoad load = device_.template sum<SolidLoad>(walls_.slots(), solids_.sumOf(view(), s));
         auto scaled = [&](const double* a) { return mass * Vec3d{a[0], a[1], a[2]}; };

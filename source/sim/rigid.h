@@ -14,6 +14,37 @@ struct RigidBody {
     real deepestBall;                    // m
 };
 
+// How near a solid that floats comes to the box or another solid, and which way the fluid would press
+// it if its pressure were the same everywhere: against what it is so near to that no fluid is between.
+struct Gap {
+    real width = 1e30;   // m
+    double pressed[3] = {0, 0, 0};
+    HD_OUT void add(const Gap& o) {
+        width = o.width < width ? o.width : width;
+        for (int k = 0; k < 3; ++k) pressed[k] += o.pressed[k];
+    }
+    // 1 where no particle of fluid fits in, 0 where two do.
+    HD real narrowness(real spacing) const {
+        return min(max(real(2) - width / spacing, real(0)), real(1));
+    }
+};
+// The pressure of the fluid that presses it there: sums of a weight w, w p / rho0^2, and w x.
+struct PressureAround {
+    double weight = 0, pressure = 0, place[3] = {0, 0, 0};
+    HD_OUT void add(const PressureAround& o) {
+        weight += o.weight, pressure += o.pressure;
+        for (int k = 0; k < 3; ++k) place[k] += o.place[k];
+    }
+    // p / rho0^2 at x, of fluid at rest under `pull`, m/s^2.
+    HD real at(Vector<real> x, Vector<real> pull, real restDensity) const {
+        if (weight <= 0) return 0;
+        const double per = 1 / weight;
+        const double height = pull.x * (x.x - per * place[0]) + pull.y * (x.y - per * place[1]) +
+                              pull.z * (x.z - per * place[2]);
+        return max(real(per * pressure + height / restDensity), real(0));
+    }
+};
+
 // The quaternion of a small turn, radians, after another one; of length 1.
 HD inline void turnBy(double (&q)[4], Vec3d angle) {
     const double size = sqrt(dot(angle, angle)), half = 0.5 * size, share = size > 1e-12 ? sin(half) / size : 0.5, c = cos(half);

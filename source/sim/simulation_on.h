@@ -353,9 +353,14 @@ private:
     }
     void moveObjects() { objects_.move(view(), whatFloats()); }
     void findSolidForces() {
-        (this->*findLoads_)();
         const View v = view();
+        findAllLoads(v);
         floating_.findForces(scene_, v, solids_.home(), [&](int solid) { return solids_.sumOf(v, solid); });
+    }
+    void findAllLoads(const View& v) {
+        (this->*findLoads_)();
+        for (int s = 0; s < v.solidCount; ++s)
+            if (scene_.solids[size_t(s)].floats()) solids_.pressFromGaps(v, floating_.bodies(), s);
     }
     template <int halvesOfKick, bool drifts> void moveFloating() {
         floating_.move(view(), particleMass(scene_), hold_, 0.5 * halvesOfKick, drifts ? 1 : 0);

@@ -3,6 +3,7 @@
 
 #include "core/error.h"
 #include "scene/convex.h"
+#include "scene/mass.h"
 #include "scene/motion.h"
 #include "scene/sample_solid.h"
 #include "sim/neighbours.h"
@@ -147,6 +148,7 @@ struct WallsAtHome {
     const int* solid;       // -1: of the domain's walls
     VectorField position;   // m
     ScalarField mass;       // 0: follows from neighbours
+    VectorField area;       // m^2 / kg of a fluid particle, of the surface of what floats
     Vector<real> size;      // m, the domain's
     HD int solidOf(int id) const { return solid ? solid[id - firstId] : -1; }
     // Whether a cluster has any particle of a solid.
@@ -214,19 +216,30 @@ template <class Kernel, class... Terms> struct ComputeWallLoads<Kernel, TermList
     static constexpr unsigned needs = TermList<Terms...>::needs;
     View v;
     VectorField pressure, other;
+    // What pressure would be if p / rho^2 of both added up to 1, and to that of fluid at rest where it
+    // is none at the boundary particle.
+    VectorField seen, seenAtRest;
     WallsAtHome home;
     HD void operator()(Group b) const {
         if (!home.hasSolid(v.walls, firstOf(b) / clusterSize)) return;
         const Wall<R> wall = loadWall<needs>(v.walls, b);
         Acceleration<R> a{};
-        forNeighbours<Lists::All>(v, v.fluidNearWalls, b, load(v.walls.position, b), [&](auto p, Four j) LANE_CALL {
+        const Vector<R> x = load(v.walls.position, b);
+        const Vector<R> pull = R(1 / v.c.restDensity) * bodyForce(v.c, gravityNow(v), x);
+        Vector<R> seen{0, 0, 0}, atRest{0, 0, 0};
+        forNeighbours<Lists::All>(v, v.fluidNearWalls, b, x, [&](auto p, Four j) LANE_CALL {
             p.r = R(-1) * p.r;
+            const Vector<R> slope = Kernel::g(p.q) * p.r;
+            seen = seen + slope, atRest = addScaled(atRest, dot(pull, p.r), slope);
             const State<R> fluid = loadState<needs>(v.fluid, j);
             (Terms::addWall(v.c, p, weights<Kernel>(p.q), fluid, wall, a), ...);
         });
         const R scale = -v.c.gradientScale;
         store(pressure, b, scale * total(a.pressure));
         store(other, b, scale * total(a.other));
+        const R area = R(v.c.gradientScale) * wall.mass;
+        store(this->seen, b, area * total(seen));
+        store(seenAtRest, b, area * total(atRest));
     }
 };
 
@@ -238,17 +251,114 @@ struct SolidLoad {
     }
 };
 struct SumSolidLoad {
-    Particles walls;
+    View v;
     VectorField pressure, other;
     WallsAtHome home;
-    const SolidState* solids;
     int solid;
-    Constants c;
     HD void addTo(SolidLoad& sum, int i) const {
-        if (walls.id[i] < 0 || home.solidOf(walls.id[i]) != solid) return;
+        if (v.walls.id[i] < 0 || home.solidOf(v.walls.id[i]) != solid) return;
         const Vector<real> p = load(pressure, i), o = load(other, i);
-        const Vector<real> torque = cross(imageOf(c, load(walls.position, i) - solids[solid].middle), p + o);
+        const Vector<real> arm = imageOf(v.c, load(v.walls.position, i) - v.solids[solid].middle);
+        const Vector<real> torque = cross(arm, p + o);
         sum.add({{p.x, p.y, p.z}, {o.x, o.y, o.z}, {torque.x, torque.y, torque.z}});
+    }
+};
+
+// Where what floats comes near the box and other solids are gaps that no particle of fluid fits into.
+// Without the fluid's pressure there it would be pressed against them, the more the deeper it is. So
+// near them the pressure that fluid at rest would have acts on its closed surface, and what particles
+// of fluid press with counts from there: what they don't, the ground takes.
+struct FloatingParticle {
+    Vector<real> place;           // the image next to its solid's middle
+    real depth;                   // m
+    Vector<real> area;            // as at home
+};
+struct BesideGround {
+    View v;
+    WallsAtHome home;
+    const RigidBody* bodies;
+    int solid;
+    VectorField pressure, seen, seenAtRest;   // as ComputeWallLoads found them
+
+    HD const RigidBody& body() const { return bodies[solid]; }
+    HD bool has(int i) const { return v.walls.id[i] >= 0 && home.solidOf(v.walls.id[i]) == solid; }
+    HD FloatingParticle at(int i) const {
+        const SolidState& s = v.solids[solid];
+        const int k = v.walls.id[i] - home.firstId;
+        Vector<real> normal{0, 0, 0};
+        return {s.middle + imageOf(v.c, load(v.walls.position, i) - s.middle),
+                -surface(s, load(home.position, k) - s.home, normal), load(home.area, k)};
+    }
+    HD bool isOutermost(const FloatingParticle& p) const { return p.depth <= body().deepestBall; }
+    HD real gapOf(const FloatingParticle& p) const {
+        return isOutermost(p) ? min(toBox(p.place), toSolids(p.place)) - p.depth : real(1e30);
+    }
+    HD real toBox(Vector<real> x) const {
+        const Constants& c = v.c;
+        real nearest = 1e30;
+        auto side = [&](real at, real low, real high) LANE_CALL {
+            nearest = min(nearest, min(at - low, high - at));
+        };
+        if (c.period.x <= 0) side(x.x, c.low.x, c.high.x);
+        if (c.period.y <= 0) side(x.y, c.low.y, c.high.y);
+        if (c.period.z <= 0 && c.dimensions == 3) side(x.z, c.low.z, c.high.z);
+        return nearest;
+    }
+    HD real toSolids(Vector<real> x) const {
+        real nearest = 1e30;
+        for (int other = 0; other < v.solidCount; ++other) {
+            const SolidState& s = v.solids[other];
+            const Vector<real> arm = imageOf(v.c, x - s.middle);
+            const real far = s.reach + v.c.support;
+            if (other == solid || dot(arm, arm) > far * far) continue;
+            Vector<real> normal{0, 0, 0};
+            const Vector<real> own{dot(arm, s.axis[0]), dot(arm, s.axis[1]), dot(arm, s.axis[2])};
+            nearest = min(nearest, surface(s, own, normal));
+        }
+        return nearest;
+    }
+};
+struct FindGap {
+    BesideGround beside;
+    HD void addTo(Gap& sum, int i) const {
+        if (!beside.has(i)) return;
+        const Vector<real> seen = load(beside.seen, i);
+        sum.add({beside.gapOf(beside.at(i)), {seen.x, seen.y, seen.z}});
+    }
+};
+struct FindPressureAround {
+    BesideGround beside;
+    const Gap* gap;
+    HD void addTo(PressureAround& sum, int i) const {
+        if (!beside.has(i)) return;
+        const Vector<real> x = beside.at(i).place, seen = load(beside.seen, i);
+        const Vector<real> felt = load(beside.pressure, i) - load(beside.seenAtRest, i);
+        const double(&pressed)[3] = gap->pressed;
+        auto along = [&](Vector<real> a) LANE_CALL {
+            return a.x * pressed[0] + a.y * pressed[1] + a.z * pressed[2];
+        };
+        const double w = along(seen);
+        if (w > 0) sum.add({w, 0.5 * along(felt), {w * x.x, w * x.y, w * x.z}});
+    }
+};
+struct PressFromGaps {
+    using Index = int;
+    BesideGround beside;
+    const Gap* gap;
+    const PressureAround* around;
+    HD void operator()(int i) const {
+        const real share = gap->narrowness(beside.body().deepestBall / real(0.75));
+        if (share <= 0 || !beside.has(i)) return;
+        const View& v = beside.v;
+        const FloatingParticle p = beside.at(i);
+        const Vector<real> pull = bodyForce(v.c, gravityNow(v), p.place);
+        const real rest = share * around->at(p.place, pull, v.c.restDensity);
+        if (rest <= 0) return;
+        const Vector<real> atRest = share * load(beside.seenAtRest, i);
+        Vector<real> change = real(-2) * rest * load(beside.seen, i) - atRest;
+        const Vector<real> area = turned(v.solids[beside.solid], p.area);
+        change = subtractScaled(change, rest * v.c.restDensity * v.c.restDensity, area);
+        store(beside.pressure, i, load(beside.pressure, i) + change);
     }
 };
 
@@ -324,14 +434,23 @@ public:
     // What fluid does to each of their particles, and the sum over those of one solid.
     template <class Pass> void findLoads(const View& v) {
         reserveLoads(v.walls.slots);
-        device_.forEach(v.walls.slots, Pass{v, {pressureLoad_.data()}, {otherLoad_.data()}, home()});
+        device_.forEach(v.walls.slots, Pass{v, {pressureLoad_.data()}, {otherLoad_.data()}, {seen_.data()},
+                                                  {seenAtRest_.data()}, home()});
+    }
+    void pressFromGaps(const View& v, const RigidBody* bodies, int solid) {
+        const BesideGround beside{v, home(), bodies, solid, {pressureLoad_.data()}, {seen_.data()},
+                                  {seenAtRest_.data()}};
+        device_.reduce(v.walls.slots, FindGap{beside}, gap_.data());
+        device_.reduce(v.walls.slots, FindPressureAround{beside, gap_.data()}, around_.data());
+        device_.forEach(v.walls.slots, PressFromGaps{beside, gap_.data(), around_.data()});
     }
     SumSolidLoad sumOf(const View& v, int solid) {
-        return {v.walls, {pressureLoad_.data()}, {otherLoad_.data()}, home(), states_.data(), solid, v.c};
+        return {v, {pressureLoad_.data()}, {otherLoad_.data()}, home(), solid};
     }
     // A recorded step can't make room.
     void reserveLoads(int slots) {
-        for (auto* field : {&pressureLoad_, &otherLoad_}) field->resize(vectorSize(slots));
+        for (auto* field : {&pressureLoad_, &otherLoad_, &seen_, &seenAtRest_}) field->resize(vectorSize(slots));
+        gap_.resize(1), around_.resize(1);
     }
     std::vector<SolidState> download() {
         std::vector<SolidState> host(count_);
@@ -340,7 +459,7 @@ public:
     }
 
     WallsAtHome home() {
-        return {firstId_, solidOf_.data(), {position_.data()}, {mass_.data()}, size_};
+        return {firstId_, solidOf_.data(), {position_.data()}, {mass_.data()}, {area_.data()}, size_};
     }
 
 private:
@@ -367,20 +486,30 @@ private:
     void placeParticles(const Scene& scene, const std::vector<Vec3>& walls, const std::vector<int>& sizes) {
         const size_t slots = (walls.size() + clusterSize - 1) / clusterSize * clusterSize;
         std::vector<int> solidOf(slots, -1);
-        std::vector<real> mass(slots);
+        std::vector<real> mass(slots), area(floats_ ? size_t(vectorSize(int(slots))) : 0);
         size_t end = 0;
         for (size_t s = 0; s < scene.solids.size(); ++s) {
-            const std::vector<float> volumes = sampleSolid(scene, scene.solids[s]).volumes;
+            const SolidSample sample = sampleSolid(scene, scene.solids[s]);
+            const std::vector<float>& volumes = sample.volumes;
             if (sizes.size() <= s || volumes.size() != size_t(sizes[s]))
                 throw Error(Exit::Scene, "solids: the particles of this run are of another version of the program; start the scene again");
             std::copy(volumes.begin(), volumes.end(), mass.begin() + long(end));
             std::fill_n(solidOf.begin() + long(end), sizes[s], int(s));
+            if (scene.solids[s].floats()) fillAreas(scene, scene.solids[s], sample, int(end), area);
             end += volumes.size();
         }
         std::vector<real> x(vectorSize(int(slots)));
         for (size_t i = 0; i < walls.size(); ++i)
             for (int k = 0; k < 3; ++k) x[vectorOffset(int(i), k)] = walls[i][k];
-        fill(solidOf_, solidOf), fill(position_, x), fill(mass_, mass);
+        fill(solidOf_, solidOf), fill(position_, x), fill(mass_, mass), fill(area_, area);
+    }
+    static void fillAreas(const Scene& scene, const Solid& solid, const SolidSample& sample, int first,
+                          std::vector<real>& out) {
+        const double perMass = 1 / particleMass(scene);
+        for (const Vec3d& area : surfaceAreas(scene, solid, sample)) {
+            for (int k = 0; k < 3; ++k) out[size_t(vectorOffset(first, k))] = real(perMass * area[k]);
+            ++first;
+        }
     }
 
     Device& device_;
@@ -392,7 +521,9 @@ private:
     Buffer<MotionKey, Device> keys_{device_};
     Buffer<real, Device> fields_{device_};   // of meshes, one after the other
     Buffer<int, Device> solidOf_{device_};
-    Buffer<real, Device> position_{device_}, mass_{device_}, pressureLoad_{device_}, otherLoad_{device_};
+    Buffer<real, Device> position_{device_}, mass_{device_}, area_{device_}, pressureLoad_{device_}, otherLoad_{device_}, seen_{device_}, seenAtRest_{device_};
+    Buffer<Gap, Device> gap_{device_};
+    Buffer<PressureAround, Device> around_{device_};
 };
 
 }  // namespace spindrift::LANES
