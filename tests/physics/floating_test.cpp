@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <numbers>
 
 namespace spindrift {
@@ -58,6 +59,74 @@ TEST(Floating, FluidAndSolidKeepTheirMomentum) {
         EXPECT_GT(length(simulation->measure().solids[0].spin), 0.05) << "beside its middle";
         EXPECT_LT(length(momentum() - before) / length(before), 1e-5) << formulation << " " << integrator;
     }
+}
+
+// What lies on the floor of a tank, or beside its wall, and how far up it is after a while. Gravity
+// grows, so that the water does not fall first.
+struct Submerged {
+    std::string form;   // of the solid, about (0.2, y, 0.2)
+    double density;
+    int dimensions, across;   // spacings in 0.1 m
+    std::string formulation = "wcsph";
+};
+void runUntil(Simulation& simulation, double time) {
+    simulation.stopAt(time);
+    while (simulation.clock().time < time) simulation.step();
+}
+std::unique_ptr<Simulation> tankWith(const Submerged& s) {
+    Scene scene;
+    scene.compute.backend = Backend::Cpu;
+    const std::string knobs[] = {
+        "simulation.formulation=" + s.formulation, "simulation.dimensions=" + std::to_string(s.dimensions),
+        "simulation.spacing=" + std::to_string(0.1 / s.across), "simulation.gravity_ramp=0.1",
+        "domain.max=0.4,0.5,0.4", "fluid.dissipation=1",
+        R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.4,0.4,0.4]}])",
+        "solids=[{" + s.form + ",\"density\":" + std::to_string(s.density) + "}]"};
+    for (const std::string& knob : knobs) setKnob(scene, knob);
+    return makeSimulation(scene);
+}
+// m, once gravity has grown.
+double rise(const Submerged& s) {
+    auto simulation = tankWith(s);
+    runUntil(*simulation, 0.2);
+    const double before = simulation->measure().solids[0].position.y;
+    runUntil(*simulation, 0.5);
+    return simulation->measure().solids[0].position.y - before;
+}
+const std::string OnTheFloor = R"("shape":"sphere","center":[0.2,0.1,0.2],"radius":0.1)";
+const std::string BesideTheWall = R"("shape":"sphere","center":[0.1,0.2,0.2],"radius":0.1)";
+
+// Without the pressure of gaps they stick: the floor's is several times the buoyancy.
+TEST(Floating, LightBallsRiseFromTheFloorAndOffWalls) {
+    for (const std::string& form : {OnTheFloor, BesideTheWall})
+        for (int across : {3, 4, 6, 8})
+            for (double density : {100.0, 500.0, 900.0})
+                EXPECT_GT(rise({form, density, 2, across}), 0.004) << form << density << " " << across;
+    for (const std::string formulation : {"wcsph", "delta_sph"})
+        for (int across : {3, 4})
+            EXPECT_GT(rise({OnTheFloor, 900, 3, across, formulation}), 0.01) << formulation << across;
+}
+
+// Heavier ones stay where they are, and the water carries what it should of them: the weight of the
+// water that they displace, though there is none below them.
+TEST(Floating, HeavySolidsOnTheFloorFeelTheirBuoyancy) {
+    struct Case { std::string form; double height, volume, area; };
+    const Case cases[] = {
+        {R"("shape":"block","min":[0.1,0,0.1],"max":[0.3,0.2,0.3])", 0.1, 0.008, 0.04},
+        {R"("shape":"wedge","min":[0.1,0,0.1],"max":[0.3,0.1,0.3])", 0.05, 0.002, 0.01},
+        {R"("shape":"cylinder","axis":"y","center":[0.2,0.05,0.2],"radius":0.1,"height":0.1)", 0.05,
+         0.001 * std::numbers::pi, 0},
+    };
+    for (const Case& c : cases)
+        for (int dimensions : {2, 3}) {
+            const double displaced = dimensions == 2 ? c.area : c.volume;
+            if (displaced == 0) continue;
+            auto tank = tankWith({c.form, 2000, dimensions, 4});
+            runUntil(*tank, 0.3);
+            const SolidMeasurement s = tank->measure().solids[0];
+            EXPECT_NEAR(s.position.y, c.height, 0.001) << c.form << dimensions;
+            EXPECT_NEAR(s.pressureForce.y / (9.81e3 * displaced), 1, 0.02) << c.form << dimensions;
+        }
 }
 
 TEST(Floating, FallsAndTumblesFreely) {
@@ -192,7 +261,7 @@ TEST(Floating, MassesAreThoseOfTheShapes) {
     EXPECT_NEAR(0.5 + m.centre.y, moment / mass, 0.003);
     EXPECT_NEAR(m.inertia[2].z, xx + yy - moment * moment / mass, 0.005);
     m = massOfSolid(R"({"shape":"sphere","radius":0.5,"density":1000})", 2);
-    EXPECT_NEAR(m.mass, 1000 * std::numbers::pi * 0.25 * 0.05, 1e-3);
+    EXPECT_NEAR(m.mass, 1000 * std::numbers::pi * 0.25, 1e-3);   // of a metre of depth
     EXPECT_NEAR(m.inertia[2].z, 0.5 * m.mass * 0.25, 1e-4);
 }
 
