@@ -309,7 +309,9 @@ private:
             writeCheckpointOf(simulation_->state());
         else
             keepLastGood();
-        if (!output.particles.empty() && trouble_.empty()) saveParticles(output.particles, simulation_->particles());
+        if (!output.particles.empty() && trouble_.empty())
+            saveParticles(output.particles, simulation_->particles(),
+                          massesToSave(scene_, *simulation_));
         if (!output.screenshot.empty()) pictures_->save(*simulation_, scene_, output.screenshot);
         if (!quiet_) summarise();
         else if (!isInvalid())
@@ -332,6 +334,8 @@ private:
         for (const Poured& p : poured_)
             fmt::print(out, "poured         {:.4g} kg into fluid.bodies[{}], {:.4g} kg by its volume\n",
                        p.mass, p.body, p.wanted);
+        for (const std::string& body : pouredAmiss(scene_, *simulation_))
+            fmt::print(out, "poured         {}\n", body);
         fmt::print(out, "steps          {}, {:.3g} ms each\n", steps_ - first_, ms);
         if (scene_.time.mode == TimeMode::Local && made_ > 0)
             fmt::print(out, "local steps    {:.3g} evaluations of a particle a step\n",

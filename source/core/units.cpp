@@ -136,6 +136,7 @@ const std::vector<std::string>& common(const std::string& to) {
         {"m/s", {"m/s", "cm/s", "mm/s", "km/h", "ft/s"}},
         {"kg/m³", {"kg/m³", "g/cm³", "g/cc", "g/ml", "kg/l"}},
         {"Pa", {"Pa", "hPa", "kPa", "MPa", "bar", "mbar", "atm", "psi"}},
+        {"kg", {"kg", "g", "mg"}},
         {"s", {"s", "ms", "us", "min", "h"}},
         {"degrees", {"degrees", "deg", "rad", "turn"}},
         {"degrees/s", {"degrees/s", "deg/s", "rad/s", "turn/s"}},

@@ -1,8 +1,9 @@
 #pragma once
-// How much fluid there is in the meshes that it was to fill.
+// How much fluid there is in the bodies that it was to fill.
 #include "scene/scene.h"
 #include "sim/simulation.h"
 
+#include <string>
 #include <vector>
 
 namespace spindrift {
@@ -17,5 +18,10 @@ struct Poured {
 
 // Of the particles of a run that has not begun.
 std::vector<Poured> pouredIntoMeshes(const Scene&, const std::vector<Particle>&);
+
+// A line for each fluid whose particles have more than 1 % more or less mass than the bodies that they
+// fill hold beside solids: round ones and those that no lattice fits. None where files say which
+// particles there are, nor of meshes.
+std::vector<std::string> pouredAmiss(const Scene&, Simulation&);
 
 }  // namespace spindrift

@@ -6,8 +6,13 @@
 
 namespace spindrift {
 
-// Particles as a table that a body of shape file can be: HDF5 when the path ends in .h5, else CSV; world coordinates, all digits. Throws
-// Error (Output).
-void saveParticles(const std::string& path, const std::vector<Particle>&);
+// Particles as a table that a body of shape file can be: HDF5 when the path ends in .h5, else CSV; world coordinates, all digits, and their
+// masses, kg, in two dimensions kg/m, where they are given. Throws Error (Output).
+void saveParticles(const std::string& path, const std::vector<Particle>&,
+                   const std::vector<double>& masses = {});
+
+// Of each particle in the order of their ids; none where a particle's volume is spacing^3, as whoever
+// reads the file takes it then.
+std::vector<double> massesToSave(const Scene&, Simulation&);
 
 }  // namespace spindrift

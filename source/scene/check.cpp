@@ -7,6 +7,7 @@
 #include "scene/json.h"
 #include "scene/motion.h"
 #include "scene/particle_file.h"
+#include "scene/lattice.h"
 #include "scene/particle_spacing.h"
 #include "scene/sample_object.h"
 #include "scene/schema.h"
@@ -227,6 +228,29 @@ void checkDensities(const std::string& body, const std::string& file, const Part
                                  file, *least, *most, rest));
 }
 
+// Particles have one volume in all of a scene, which is about a cell of its spacing.
+void checkMasses(const Scene& scene, const std::string& body, const std::string& file,
+                 const ParticleTable& table, double rest, double found) {
+    const auto [least, most] = std::minmax_element(table.masses.begin(), table.masses.end());
+    if (*most > (1 + 1e-4) * *least)
+        refuse(body, fmt::format("{}: masses are {:.6g} to {:.6g} kg, and a body's particles have "
+                                 "one; give each fluid a file of its own",
+                                 file, *least, *most));
+    const double volume = particleVolume(scene);
+    if (std::abs(*least / (rest * volume) - 1) > 1e-3)
+        refuse(body, fmt::format("{}: {:.6g} kg of {:g} kg/m³ are {:.6g} m³, and particles of "
+                                 "another file have {:.6g} m³; they must have one volume",
+                                 file, *least, rest, *least / rest, volume));
+    const double dx = scene.simulation.spacing;
+    const int d = scene.simulation.dimensions;
+    const double side = std::pow(volume, 1.0 / d);
+    if (std::abs(found / side - 1) > 0.05 || std::abs(found / dx - 1) > 0.3)
+        refuse(body, fmt::format("{}: its {} particles are {:.3g} m apart in the mean, by their "
+                                 "mass {:.3g} m, and simulation.spacing is {:.3g} m; set "
+                                 "fluid.rest_density and simulation.spacing as they were",
+                                 file, table.positions.size(), found, side, dx));
+}
+
 // Where a column says how dense particles are, they may be nearer or farther by what that makes.
 void checkSpacing(const Scene& scene, const std::string& body, const std::string& file,
                   const ParticleTable& table, double rest) {
@@ -236,6 +260,7 @@ void checkSpacing(const Scene& scene, const std::string& body, const std::string
         for (Vec3d& p : places) p.z = 0;
     const double found = spacingBetween(places, d), dx = scene.simulation.spacing;
     if (found == 0 || scene.fluid.particleMass > 0) return;
+    if (!table.masses.empty()) return checkMasses(scene, body, file, table, rest, found);
     std::vector<double> rho = table.densities;
     double expected = dx;
     if (!rho.empty()) {

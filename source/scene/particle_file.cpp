@@ -9,17 +9,23 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
 #include <iterator>
+#include <map>
+#include <mutex>
+#include <numeric>
 #include <optional>
 
 namespace spindrift {
 namespace {
 
-constexpr const char* Names[] = {"x", "y", "z", "vx", "vy", "vz", "rho", "p"};
-constexpr const char* Units[] = {"m", "m", "m", "m/s", "m/s", "m/s", "kg/m³", "Pa"};
-constexpr size_t Columns = std::size(Names), Rho = 6, P = 7;
+constexpr const char* Names[] = {"x", "y", "z", "vx", "vy", "vz", "rho", "p", "mass"};
+constexpr const char* Units[] = {"m", "m", "m", "m/s", "m/s", "m/s", "kg/m³", "Pa", "kg"};
+constexpr size_t Columns = std::size(Names), Rho = 6, P = 7, M = 8;
 using Values = std::array<std::vector<double>, Columns>;   // of each column, empty where there is none
 
 [[noreturn]] void refuse(const std::string& path, const std::string& what) {
@@ -30,7 +36,7 @@ using Values = std::array<std::vector<double>, Columns>;   // of each column, em
 // classic formulation, which don't count themselves, have it.
 ParticleTable tableOf(const std::string& path, Values v, std::vector<int> lines) {
     for (size_t k = 0; k < 3; ++k)
-        if (v[k].empty()) refuse(path, fmt::format("has no particles, or no column {}; it needs x, y, z, and may have vx, vy, vz, rho, p", Names[k]));
+        if (v[k].empty()) refuse(path, fmt::format("has no particles, or no column {}; it needs x, y, z, and may have vx, vy, vz, rho, p, mass", Names[k]));
     for (size_t k = 1; k < Columns; ++k)
         if (!v[k].empty() && v[k].size() != v[0].size())
             refuse(path, fmt::format("{} values of {}, but {} of x", v[k].size(), Names[k], v[0].size()));
@@ -46,9 +52,13 @@ ParticleTable tableOf(const std::string& path, Values v, std::vector<int> lines)
             if (!v[k].empty() && !std::isfinite(v[k][i])) complaints.push_back(fmt::format("{}: {} is no number", table.nameOf(i), Names[k]));
         if (!v[Rho].empty() && v[Rho][i] < 0)
             complaints.push_back(fmt::format("{}: rho = {:g} kg/m³ is below 0", table.nameOf(i), v[Rho][i]));
+        if (!v[M].empty() && v[M][i] <= 0)
+            complaints.push_back(
+                fmt::format("{}: mass = {:g} kg is not above 0", table.nameOf(i), v[M][i]));
     }
     refuseAny(path, complaints);
     table.densities = std::move(v[Rho]), table.pressures = std::move(v[P]);
+    table.masses = std::move(v[M]);
     return table;
 }
 
@@ -103,11 +113,53 @@ int64_t countParticlesIn(const std::string& path) {
     return withHdf5(path, [](hid_t file) { return int64_t(hdf5::Array(file, Names[0], 1).size[0]); });
 }
 
+// Most files have none: their header says so without reading the rest.
+static bool mayHaveMasses(const std::string& path) {
+    if (hdf5::isFile(path))
+        return withHdf5(path, [](hid_t file) { return H5Lexists(file, Names[M], H5P_DEFAULT) > 0; });
+    countRows(path);   // or says why it can't be read
+    std::ifstream file(path);
+    std::string line;
+    while (std::getline(file, line)) {
+        const size_t at = line.find_first_not_of(" \t\r");
+        if (at == std::string::npos || line[at] == '#') continue;
+        std::transform(line.begin(), line.end(), line.begin(),
+                       [](unsigned char c) { return char(std::tolower(c)); });
+        return line.find(Names[M]) != std::string::npos;
+    }
+    return false;
+}
+
+double massInFile(const std::string& path) {
+    if (path.empty()) refuse("\"\"", "no file is named; give its path");
+    struct Known {
+        std::filesystem::file_time_type time;
+        uintmax_t size;
+        double mass;
+    };
+    static std::mutex mutex;
+    static std::map<std::string, Known> known;
+    const std::lock_guard lock(mutex);
+    std::error_code none;
+    const auto time = std::filesystem::last_write_time(path, none);
+    const uintmax_t size = std::filesystem::file_size(path, none);
+    const auto k = known.find(path);
+    if (k != known.end() && (none || (k->second.time == time && k->second.size == size)))
+        return k->second.mass;
+    std::vector<double> masses;
+    if (mayHaveMasses(path)) masses = readParticles(path).masses;
+    const double sum = std::accumulate(masses.begin(), masses.end(), 0.0);
+    const double mean = masses.empty() ? 0 : sum / double(masses.size());
+    known[path] = {time, size, mean};
+    return mean;
+}
+
 namespace {
 
 std::vector<double> columnOf(const ParticleTable& table, size_t k) {
     if (k == Rho) return table.densities;
     if (k == P) return table.pressures;
+    if (k == M) return table.masses;
     std::vector<double> values;
     for (const Vec3d& v : k < 3 ? table.positions : table.velocities) values.push_back(v[int(k % 3)]);
     return values;

@@ -1,6 +1,8 @@
 #include "scene/particles.h"
 
+#include "scene/body_parts.h"
 #include "scene/convex.h"
+#include "scene/lattice.h"
 #include "scene/motion.h"
 #include "scene/particle_file.h"
 #include "scene/relax.h"
@@ -11,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <random>
 
 namespace spindrift {
@@ -28,6 +31,11 @@ struct Lattice {
     }
 };
 
+// In two dimensions there is none along z.
+double leastStep(const Lattice& l) {
+    return std::min({l.step.x, l.step.y, l.step.z > 0 ? l.step.z : l.step.x});
+}
+
 int64_t planes(double ratio) {
     return std::isfinite(ratio) ? int64_t(std::clamp(ratio, 0.0, MaxPlanes)) : int64_t(MaxPlanes);
 }
@@ -35,35 +43,50 @@ int64_t planes(double ratio) {
 // In two dimensions z has one layer.
 bool flat(const Scene& scene, int axis) { return scene.simulation.dimensions == 2 && axis == 2; }
 
-bool isCornered(const Form& form) { return form.shape == Shape::Block || form.shape == Shape::Wedge; }
+// The planes of a body along an axis, m from the domain's lower corner: a cornered one's begin half
+// a step inside its lower corner, a round body's are symmetric about its centre.
+struct Planes {
+    int64_t count;
+    double first, step;
+};
+Planes planesOf(const Scene& scene, const Body& body, int axis, double step) {
+    if (flat(scene, axis)) return {1, 0.5 * scene.domain.size()[axis], 0};
+    const double origin = scene.domain.min[axis];
+    if (!isBox(body)) {
+        const int64_t n = planes(std::round(2 * halfExtent(body)[axis] / step));
+        return {n, convexOf(body, 3).middle[axis] - 0.5 * step * double(n - 1) - origin, step};
+    }
+    const auto [low, count, s] = layersOf(scene, body, axis, step);
+    // A body that ends at the wall must not round up into it.
+    const double room = double(scene.domain.max[axis]) - low;
+    const int64_t n = count > 0 && double(count) * s > room + 0.25 * s ? count - 1 : count;
+    return {n, low + 0.5 * s - origin, s};
+}
 
-// The body's cell-centred lattice relative to domain.min: a cornered one's begins half a spacing inside
-// its lower corner, a round body's is symmetric about its centre.
+// The body's cell-centred lattice relative to domain.min.
 Lattice bodyLattice(const Scene& scene, const Body& body) {
-    const double dx = scene.simulation.spacing;
-    Lattice lattice{{}, {}, {dx, dx, flat(scene, 2) ? 0 : dx}};
+    const Vec3d step = latticeStep(scene);
+    Lattice lattice{{}, {}, step};
+    if (flat(scene, 2)) lattice.step.z = 0;
     if (body.shape == Shape::File) return lattice;   // no point
-    const Vec3d origin = toDouble(scene.domain.min);
     for (int k = 0; k < 3; ++k) {
-        lattice.n[k] = latticePlanes(scene, body, k);
-        if (flat(scene, k)) {
-            lattice.first[k] = 0.5 * scene.domain.size()[k];
-            continue;
-        }
-        const double beside =
-            isCornered(body) ? double(body.min[k]) + 0.5 * dx
-                             : convexOf(body, 3).middle[k] - 0.5 * dx * double(lattice.n[k] - 1);
-        lattice.first[k] = beside - origin[k];
+        const Planes p = planesOf(scene, body, k, step[k]);
+        lattice.n[k] = p.count, lattice.first[k] = p.first, lattice.step[k] = p.step;
     }
     return lattice;
+}
+
+std::vector<Lattice> latticesOf(const Scene& scene) {
+    std::vector<Lattice> lattices;
+    for (const Body& body : scene.fluid.bodies) lattices.push_back(bodyLattice(scene, body));
+    return lattices;
 }
 
 // Whether p, relative to domain.min, lies in the body. Flat sides are taken where the lattice ends, half a spacing beyond its last plane.
 bool contains(const Body& body, const Lattice& lattice, Vec3d origin, Vec3d p) {
     if (body.shape == Shape::File) return false;
     for (int k = 0; k < 3; ++k) {
-        const bool plane = isCornered(body) || (body.shape == Shape::Cylinder && k == int(body.axis));
-        if (!plane) continue;
+        if (!hasFlatEnds(body, k)) continue;
         const double low = lattice.first[k] - 0.5 * lattice.step[k];
         if (p[k] < low || p[k] > low + double(lattice.n[k]) * lattice.step[k]) return false;
     }
@@ -95,8 +118,7 @@ int64_t wallLayers(const Scene& scene, int axis) {
 // original's floats do.
 Lattice wallLattice(const Scene& scene) {
     Lattice lattice{};
-    const Vec3d size = scene.domain.size();
-    const double dx = scene.simulation.spacing;
+    const Vec3d size = scene.domain.size(), step = wallStep(scene);
     const float R = supportRadius(scene);
     for (int k = 0; k < 3; ++k) {
         if (scene.simulation.formulation == Formulation::Classic) {
@@ -104,8 +126,9 @@ Lattice wallLattice(const Scene& scene) {
             lattice.n[k] = std::max<int64_t>(2, planes(2 * double(std::ceil(side / R))));
             lattice.step[k] = 0.999 * size[k] / double(lattice.n[k] - 1);
         } else {
-            const int64_t inside = flat(scene, k) ? 1 : std::max<int64_t>(1, planes(std::round(size[k] / dx)));
-            lattice.step[k] = size[k] / double(inside);
+            const int64_t inside =
+                flat(scene, k) ? 1 : std::max<int64_t>(1, planes(std::round(size[k] / step[k])));
+            lattice.step[k] = flat(scene, k) ? size[k] : step[k];
             lattice.n[k] = inside + 2 * wallLayers(scene, k);
             lattice.first[k] = (0.5 - double(wallLayers(scene, k))) * lattice.step[k];
         }
@@ -179,10 +202,15 @@ std::vector<Convex> solidsOf(const Scene& scene) {
 }
 
 // Whether p lies in a solid or a thin skin around it, in which no fluid starts. Lattices that don't end at the surface must fill the space in
-// front of it in the mean: a tank with a wedge on its floor, H/dx = 40, has 0.5 % error of pressure with a skin of 0.1 dx, 1.7 % with 0.3 dx.
-bool isTaken(const Scene& scene, const std::vector<Convex>& solids, Vec3d p) {
+// front of it in the mean: a tank with a wedge on its floor, H/dx = 40, has 0.5 % error of pressure with a skin of 0.1 dx, 1.7 % with 0.3 dx. Where layers
+// are parallel to a face and don't fit, there is one too few rather than one too many, which bursts.
+bool isTaken(const Scene& scene, const std::vector<Convex>& solids, double besideFaces, Vec3d p) {
     const double skin = 0.1 * double(scene.simulation.spacing);
-    return std::any_of(solids.begin(), solids.end(), [&](const Convex& solid) { return distanceFrom(scene, solid, p) < skin; });
+    for (size_t s = 0; s < solids.size(); ++s) {
+        const double least = isFace(scene.solids[s]) ? std::max(besideFaces, skin) : skin;
+        if (distanceFrom(scene, solids[s], p) < least) return true;
+    }
+    return false;
 }
 
 // Where a particle begins, relative to domain.min, and of which body it has the rest.
@@ -191,7 +219,7 @@ struct Place { Vec3d at; size_t body; };
 // Whether a particle of this body lies nearer to p than 0.98 spacings. Lattices that don't match and come nearer squeeze particles
 // (0.95 spacings: 6 %, 0.78: 12 %), and their fluid bursts apart in the first steps, faster than a first-order integrator follows.
 bool crowds(const Body& body, const Lattice& l, Vec3d origin, Vec3d p) {
-    const double least = 0.98 * l.step.x;
+    const double least = 0.98 * leastStep(l);
     int64_t low[3];
     for (int k = 0; k < 3; ++k) low[k] = l.step[k] > 0 ? int64_t(std::floor((p[k] - l.first[k]) / l.step[k])) : 0;
     for (int corner = 0; corner < 8; ++corner) {
@@ -210,11 +238,14 @@ void placeBody(const Scene& scene, const std::vector<Lattice>& lattices, size_t 
     const std::vector<Body>& bodies = scene.fluid.bodies;
     const Vec3d origin = toDouble(scene.domain.min);
     const Lattice& l = lattices[b];
+    const bool fits = areSidesWhole(scene) || relaxed(scene);
+    const double besideFaces = fits ? 0 : 0.4 * leastStep(l);
     for (int64_t k = 0; k < l.n[2]; ++k)
         for (int64_t j = 0; j < l.n[1]; ++j)
             for (int64_t i = 0; i < l.n[0]; ++i) {
                 const Vec3d p = l.at(i, j, k);
-                bool free = contains(bodies[b], l, origin, p) && !isTaken(scene, solids, p);
+                bool free =
+                    contains(bodies[b], l, origin, p) && !isTaken(scene, solids, besideFaces, p);
                 for (size_t e = 0; e < b && free; ++e)
                     free = !crowds(bodies[e], lattices[e], origin, p);
                 if (free) out.push_back({p + jitter.next(), b});
@@ -228,9 +259,14 @@ Form fitted(const Scene& scene, const Body& body, const Lattice& l) {
     const double dx = scene.simulation.spacing;
     Form form = body;
     for (int k = 0; k < scene.simulation.dimensions; ++k) {
-        const bool ends = body.shape == Shape::Cylinder && k == int(body.axis);
-        if (!isCornered(body) && !ends) continue;
+        const bool ends = !isBox(body);
+        if (!hasFlatEnds(body, k)) continue;
         double low = l.first[k] - 0.5 * dx, high = low + double(l.n[k]) * dx;
+        // Sides that are no whole number of spacings: the packing needs no layers.
+        const double side = 2 * halfExtent(body)[k];
+        if (std::abs(side - (high - low)) > 1e-3 * dx) {
+            low = convexOf(body, 3).middle[k] - 0.5 * side - origin[k], high = low + side;
+        }
         if (low < 0.5 * dx) low = 0;
         if (high > size[k] - 0.5 * dx) high = size[k];
         if (scene.domain.periodic(k) && low == 0 && high == size[k]) low -= 100 * size[k], high += 100 * size[k];
@@ -240,18 +276,24 @@ Form fitted(const Scene& scene, const Body& body, const Lattice& l) {
     return form;
 }
 
-// All bodies together, without the solids.
-Region regionOf(const Scene& scene, const std::vector<Lattice>& lattices) {
+std::vector<Form> fittedBodies(const Scene& scene, const std::vector<Lattice>& lattices) {
+    std::vector<Form> forms;
+    for (size_t b = 0; b < lattices.size(); ++b)
+        forms.push_back(fitted(scene, scene.fluid.bodies[b], lattices[b]));
+    return forms;
+}
+
+// Some forms together, without the solids.
+Region regionOf(const Scene& scene, const std::vector<Form>& forms) {
     const Vec3d size = scene.domain.size(), origin = toDouble(scene.domain.min);
     const int d = scene.simulation.dimensions;
     std::vector<Convex> bodies;
     Region region;
     region.dimensions = d;
     region.low = size, region.high = {0, 0, 0};
-    for (size_t b = 0; b < lattices.size(); ++b) {
-        const Form form = fitted(scene, scene.fluid.bodies[b], lattices[b]);
+    for (const Form& form : forms) {
         bodies.push_back(convexOf(form, d));
-        const Vec3d middle = bodies[b].middle - origin, half = halfExtent(form);
+        const Vec3d middle = bodies.back().middle - origin, half = halfExtent(form);
         for (int k = 0; k < 3; ++k) {
             region.low[k] = std::max(std::min(region.low[k], middle[k] - half[k]), 0.0);
             region.high[k] = std::min(std::max(region.high[k], middle[k] + half[k]), size[k]);
@@ -275,25 +317,77 @@ Region regionOf(const Scene& scene, const std::vector<Lattice>& lattices) {
     return region;
 }
 
+// Packed against the same boundary particles that fluid will feel: against a wall that is a continuum
+// it comes 0.1 spacings nearer, and is pushed off when the run begins.
+void addBoundary(const Scene& scene, Region& region) {
+    const int d = scene.simulation.dimensions;
+    const double dx = scene.simulation.spacing;
+    const bool walls = scene.walls.kind == WallKind::Particles;
+    for (const Solid& solid : scene.solids) {
+        const SolidSample sample = sampleSolid(scene, solid);
+        for (size_t i = 0; i < sample.positions.size(); ++i) {
+            region.boundary.push_back(toDouble(sample.positions[i]));
+            region.boundaryVolumes.push_back(double(sample.volumes[i]) * std::pow(dx, d));
+        }
+    }
+    if (walls) {
+        std::vector<Vec3> points;
+        placeShell(wallShell(scene), points);
+        const Vec3d step = wallStep(scene);
+        for (const Vec3& p : points) region.boundary.push_back(toDouble(p));
+        region.boundaryVolumes.resize(region.boundary.size(),
+                                      step.x * step.y * (d == 2 ? 1 : step.z));
+    }
+    region.air = [&scene, walls, d, inside = region.inside,
+                  solids = solidsOf(scene)](Vec3d p, double width) {
+        auto within = [&](double distance) { return std::clamp(0.5 - distance / width, 0.0, 1.0); };
+        double share = 1;
+        for (int k = 0; k < d && walls; ++k)
+            if (!scene.domain.periodic(k))
+                share = std::min(share, within(std::max(-p[k], p[k] - scene.domain.size()[k])));
+        for (const Convex& s : solids)
+            share = std::min(share, 1 - within(distanceFrom(scene, s, p)));
+        return std::max(0.0, share - inside(p, width));
+    };
+}
+
 // From a random start: up to a spacing away from the lattice along each axis (half a spacing leaves its rows to be seen), but in the region. As many
 // as fit: a lattice in a round body has a few too many or too few.
-void relaxPlaces(const Scene& scene, const std::vector<Lattice>& lattices, std::vector<Place>& places) {
-    const Region region = regionOf(scene, lattices);
-    const double dx = scene.simulation.spacing;
+void relaxPlaces(const Scene& scene, const std::vector<Lattice>& lattices, bool isCut,
+                 std::vector<Place>& places) {
+    Region region = regionOf(scene, fittedBodies(scene, lattices));
+    if (scene.simulation.formulation != Formulation::Classic) addBoundary(scene, region);
+    const double dx = latticeStep(scene).x;
     Jitter random(scene, 1);
     auto near = [&](Vec3d at) {
         for (int tries = 0; tries < 50; ++tries)
             if (const Vec3d to = at + random.next(); region.inside(to, dx) > 0.5) return to;
         return at;
     };
-    const size_t wanted = std::max<size_t>(1, size_t(std::llround(volumeOf(region, dx) / std::pow(dx, region.dimensions))));
-    while (places.size() > wanted) {
-        places[random.oneOf(places.size())] = places.back();
-        places.pop_back();
-    }
-    while (places.size() < wanted) {
-        const Place beside = places[random.oneOf(places.size())];
-        places.push_back(beside);
+    auto adjust = [&](std::vector<Place>& some, double cells) {
+        const size_t wanted = std::max<size_t>(1, size_t(std::llround(cells)));
+        while (some.size() > wanted) {
+            some[random.oneOf(some.size())] = some.back();
+            some.pop_back();
+        }
+        while (some.size() < wanted && !some.empty()) {
+            const Place beside = some[random.oneOf(some.size())];
+            some.push_back(beside);
+        }
+    };
+    if (isCut) {   // none gets from one part to the other
+        const std::vector<double> volumes = bodyVolumes(scene);
+        std::vector<Place> all;
+        for (size_t b = 0; b < volumes.size(); ++b) {
+            std::vector<Place> some;
+            for (const Place& place : places)
+                if (place.body == b) some.push_back(place);
+            adjust(some, volumes[b] / particleVolume(scene));
+            all.insert(all.end(), some.begin(), some.end());
+        }
+        places = all;
+    } else {
+        adjust(places, volumeOf(region, dx) / std::pow(dx, region.dimensions));
     }
     std::vector<Vec3d> at;
     for (const Place& place : places) at.push_back(near(place.at));
@@ -327,12 +421,9 @@ std::string perDepth(const std::string& unit, int dimensions) {
     return dimensions == 2 ? unit + "/m" : unit;
 }
 
-double particleVolume(const Scene& scene) {
-    return std::pow(double(scene.simulation.spacing), scene.simulation.dimensions);
-}
-
 float particleMass(const Scene& scene) {
     if (scene.fluid.particleMass > 0) return scene.fluid.particleMass;
+    if (hasOwnVolume(scene)) return float(scene.fluid.restDensity * particleVolume(scene));
     const float dx = scene.simulation.spacing, area = scene.fluid.restDensity * dx * dx;
     return scene.simulation.dimensions == 2 ? area : area * dx;
 }
@@ -389,20 +480,16 @@ bool shiftsParticles(const Scene& scene) {
 }
 
 int64_t latticePlanes(const Scene& scene, const Body& body, int axis) {
-    if (flat(scene, axis)) return 1;
-    const double dx = scene.simulation.spacing;
-    const double extent = 2 * halfExtent(body)[axis];
-    int64_t n = planes(std::round(extent / dx));
-    if (!isCornered(body)) return n;
-    // A body that ends at the wall must not round up into it.
-    const double room = double(scene.domain.max[axis]) - double(body.min[axis]);
-    return n > 0 && double(n) * dx > room + 0.25 * dx ? n - 1 : n;
+    return planesOf(scene, body, axis, latticeStep(scene)[axis]).count;
 }
 
 Placement placeParticles(const Scene& scene) {
     Placement out;
-    std::vector<Lattice> lattices;
-    for (const Body& body : scene.fluid.bodies) lattices.push_back(bodyLattice(scene, body));
+    const std::vector<BodyPart> parts = partsOf(scene);
+    Scene cut = scene;
+    cut.fluid.bodies.clear();
+    for (const BodyPart& part : parts) cut.fluid.bodies.push_back(part.body);
+    const std::vector<Lattice> lattices = latticesOf(cut);
     const size_t expected = size_t(countParticles(scene).fluid);
     out.positions.reserve(expected);
     out.velocities.reserve(expected);
@@ -410,17 +497,20 @@ Placement placeParticles(const Scene& scene) {
     Jitter jitter(scene, scene.simulation.jitter);
     const std::vector<Convex> solids = solidsOf(scene);
     std::vector<Place> places;
-    for (size_t b = 0; b < lattices.size(); ++b) placeBody(scene, lattices, b, solids, jitter, places);
+    for (size_t b = 0; b < lattices.size(); ++b)
+        placeBody(cut, lattices, b, solids, jitter, places);
     if (!scene.objects.empty()) std::erase_if(places, [objects = ObjectRoom(scene)](const Place& p) { return objects.takes(p.at); });
-    if (relaxed(scene) && !places.empty()) relaxPlaces(scene, lattices, places);
+    if (relaxed(scene) && !places.empty())
+        relaxPlaces(cut, lattices, parts.size() > scene.fluid.bodies.size(), places);
     for (const Place& place : places) {
-        const Start start = startOf(scene, scene.fluid.bodies[place.body], place.at);
+        const size_t body = parts[place.body].of;
+        const Start start = startOf(scene, scene.fluid.bodies[body], place.at);
         out.positions.push_back(toFloat(place.at));
         out.velocities.push_back(toFloat(start.velocity));
         out.pressures.push_back(float(start.pressure));
-        out.bodies.push_back(uint16_t(place.body));
+        out.bodies.push_back(uint16_t(body));
     }
-    for (size_t b = 0; b < lattices.size(); ++b) {
+    for (size_t b = 0; b < scene.fluid.bodies.size(); ++b) {
         if (scene.fluid.bodies[b].shape == Shape::File) placeFile(scene, scene.fluid.bodies[b], out);
         out.bodies.resize(out.positions.size(), uint16_t(b));
     }
@@ -436,12 +526,38 @@ Placement placeParticles(const Scene& scene) {
 }
 
 double relaxedCells(const Scene& scene) {
-    std::vector<Lattice> lattices;
-    for (const Body& body : scene.fluid.bodies) lattices.push_back(bodyLattice(scene, body));
-    const Region region = regionOf(scene, lattices);
+    const Region region = regionOf(scene, fittedBodies(scene, latticesOf(scene)));
     double cells = 1;
     for (int k = 0; k < region.dimensions; ++k) cells *= (region.high[k] - region.low[k]) / scene.simulation.spacing;
     return cells;
+}
+
+std::vector<double> bodyVolumes(const Scene& scene) {
+    const int d = scene.simulation.dimensions;
+    const double dx = scene.simulation.spacing, most = 3e5;
+    const std::optional<ObjectRoom> objects =
+        scene.objects.empty() ? std::nullopt : std::optional<ObjectRoom>(scene);
+    std::vector<double> volumes;
+    std::vector<Convex> earlier;
+    for (const Body& body : scene.fluid.bodies) {
+        if (body.shape == Shape::File) {
+            volumes.push_back(0);
+            continue;
+        }
+        Region region = regionOf(scene, {body});
+        region.inside = [&, alone = region.inside](Vec3d p, double width) {
+            double share = objects && objects->takes(p) ? 0 : alone(p, width);
+            for (const Convex& e : earlier)
+                share = std::min(
+                    share, std::clamp(0.5 + distanceFrom(scene, e, p) / width, 0.0, 1.0));
+            return share;
+        };
+        double box = 1;
+        for (int k = 0; k < d; ++k) box *= region.high[k] - region.low[k];
+        volumes.push_back(volumeOf(region, std::max(dx, 2 * std::pow(box / most, 1.0 / d))));
+        earlier.push_back(convexOf(body, d));
+    }
+    return volumes;
 }
 
 FluidExtent extentOf(const Placement& p) {
@@ -501,7 +617,8 @@ static double mostInSolid(const Scene& scene, const Solid& solid) {
 
 ParticleCount countParticles(const Scene& scene) {
     ParticleCount count;
-    const double dx = scene.simulation.spacing;
+    const Vec3d step = latticeStep(scene);
+    const double least = std::min({step.x, step.y, step.z});
     double fluid = 0;
     for (const Body& body : scene.fluid.bodies) {
         if (body.shape == Shape::File) {
@@ -517,7 +634,7 @@ ParticleCount countParticles(const Scene& scene) {
             continue;
         }
         // Every kept point's cell lies in the round body grown by half a cell's diagonal.
-        const double r = double(body.radius) / dx + 0.5 * std::numbers::sqrt3;
+        const double r = double(body.radius) / least + 0.5 * std::numbers::sqrt3;
         if (body.shape == Shape::Sphere)
             points = std::min(points, 4.0 / 3 * std::numbers::pi * r * r * r);
         if (body.shape == Shape::Cylinder)

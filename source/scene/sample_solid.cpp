@@ -1,6 +1,7 @@
 #include "scene/sample_solid.h"
 
 #include "scene/convex.h"
+#include "scene/lattice.h"
 
 #include <algorithm>
 #include <cmath>
@@ -123,7 +124,7 @@ Stretch stretchAlong(const Scene& scene, Vec3d direction) {
     for (int k = 0; k < 3; ++k) {
         const double beyond = scene.domain.periodic(k) ? 0 : R;
         s.low += std::min(-beyond * direction[k], (size[k] + beyond) * direction[k]), s.high += std::max(-beyond * direction[k], (size[k] + beyond) * direction[k]);
-        if (direction[k] == 1) s.step = size[k] / std::max(1.0, std::round(size[k] / dx));
+        if (direction[k] == 1) s.step = wallStep(scene)[k];
     }
     return s;
 }

@@ -111,8 +111,8 @@ void visitMember(B& b, const std::string& at, Visitor&& visit) {
     if (b.shape == Shape::File) {
         visit(at + ".path", b.path,
               Knob{"", 0, 0,
-                   "CSV with a header, or HDF5: x, y, z, and if there are any vx, vy, vz, rho, p; all of them are taken, also inside "
-                   "other bodies. Each has the mass of spacing^3. As output.particles writes it; a relative path starts at the scene file",
+                   "CSV with a header, or HDF5: x, y, z, and if there are any vx, vy, vz, rho, p, mass; all of them are taken, also inside "
+                   "other bodies. Without mass each has that of spacing^3. As output.particles writes it; a relative path starts at the scene file",
                    Restart});
         return;
     }
@@ -399,8 +399,8 @@ void visitFluid(S& s, Visitor&& visit) {
           Knob{"kg/m³", 1e-3f, 1e5f, "density at rest", Restart});
     visit("fluid.particle_mass", f.particleMass,
           Knob{"kg", 0, 1e18f,
-               "mass of a particle, 0 = rest density x spacing^3; in two dimensions kg/m and "
-               "spacing^2", Restart});
+               "mass of a particle, 0 = rest density x its cell of the lattice; in two dimensions "
+               "kg/m", Restart});
     visit("fluid.sound_speed", f.soundSpeed,
           Knob{"m/s", 0, 1e4f, "speed of sound, 0 = speed_ratio x the expected speed"});
     visit("fluid.speed_ratio", f.speedRatio,

@@ -1,6 +1,7 @@
 // Scene -> the constants of a step, and the grid of cells.
 #pragma once
 
+#include "scene/lattice.h"
 #include "scene/motion.h"
 #include "sim/kernels.h"
 #include "sim/run_state.h"
@@ -25,21 +26,30 @@ template <class Kernel> double latticeLayer(const Scene& s, int height) {
 }
 
 // What sums over the neighbours of a lattice point give, which integrals would make 1: of W, of x dW/dx, and the Laplacian of x^2/2 in the form
-// of LaminarViscosity, which for most kernels is the second.
+// of LaminarViscosity, which for most kernels is the second. The mean of all axes, where steps along them differ.
 struct LatticeSums { double kernel = 0, gradient = 0, viscous = 0; };
 
 template <class Kernel> LatticeSums latticeSums(const Scene& s) {
     const double ratio = s.simulation.support;
-    const int n = int(ratio) + 1, d = s.simulation.dimensions, across = d == 3 ? n : 0;
-    const double norm = Kernel::norm(d) / std::pow(ratio, d);
+    const int d = s.simulation.dimensions;
+    const Vec3d step = (1 / double(s.simulation.spacing)) * latticeStep(s);
+    const bool own = hasOwnVolume(s);
+    const double volume = own ? step.x * step.y * step.z : 1;
+    const double nearest = own ? std::min({step.x, step.y, step.z}) : 1;
+    const int n = int(ratio / nearest) + 1, across = d == 3 ? n : 0;
+    const double norm = volume * Kernel::norm(d) / std::pow(ratio, d);
     LatticeSums sums;
     for (int z = -across; z <= across; ++z)
         for (int y = -n; y <= n; ++y)
             for (int x = -n; x <= n; ++x) {
-                const real q = real(std::sqrt(double(x * x + y * y + z * z)) / ratio);
+                const Vec3d at{x * step.x, y * step.y, z * step.z};
+                const double r2 = own ? dot(at, at) : double(x * x + y * y + z * z);
+                const real q = real(std::sqrt(r2) / ratio);
+                auto squared = [&](double a) { return own ? a * r2 / d : a * x * x; };
                 sums.kernel += norm * double(Kernel::w(q));
-                sums.gradient -= norm / (ratio * ratio) * Kernel::gradient(d) * double(Kernel::g(q)) * x * x;
-                sums.viscous -= norm / (ratio * ratio) * Kernel::gradient(d) * double(viscous<Kernel>(q)) * x * x;
+                const double each = norm / (ratio * ratio) * Kernel::gradient(d);
+                sums.gradient -= squared(each * double(Kernel::g(q)));
+                sums.viscous -= squared(each * double(viscous<Kernel>(q)));
             }
     return sums;
 }
@@ -72,6 +82,13 @@ template <class Kernel> double calibrateMasses(const Scene& s, const LatticeSums
     c.selfWeight = 1;
     c.wallMassFloor = 1;
     c.wallFactor = real(wall / bulk);
+    // Where a lattice is stretched a wall's particle has the volume of its own cell.
+    const double dx = s.simulation.spacing;
+    const Vec3d outside = wallStep(s), away = outside - Vec3d{dx, dx, dx};
+    const double most = std::max({std::abs(away.x), std::abs(away.y), std::abs(away.z)});
+    const double cell = outside.x * outside.y * (s.simulation.dimensions == 2 ? 1 : outside.z);
+    if (hasOwnVolume(s) || most > 1e-4 * dx)
+        c.wallFactor = 0, c.wallMassFloor = real(cell / particleVolume(s));
     return double(s.fluid.restDensity) * particleVolume(s) / bulk;
 }
 
@@ -99,7 +116,8 @@ inline void addRareForces(const Scene& s, double mass, Constants& c) {
     c.velocityTransfer = real(s.fluid.velocityTransfer * mean / 2 / c.gradientScale);
     c.buoyancy = real(s.fluid.buoyancy * mean / (rho0 * rho0) / c.gradientScale);
     c.dissipation = real(s.fluid.dissipation);
-    const double volume = dx * dx * dx, across = pi * std::pow(3 * volume / (4 * pi), 2.0 / 3);
+    const Vec3d step = latticeStep(s);
+    const double volume = hasOwnVolume(s) ? step.x * step.y * step.z : dx * dx * dx, across = pi * std::pow(3 * volume / (4 * pi), 2.0 / 3);
     c.airDrag = real(s.fluid.airDensity * s.fluid.dragCoefficient * across / (2 * rho0 * volume));
     c.wind = toVector(s.fluid.wind);
 }

@@ -3,6 +3,7 @@
 
 #include "core/error.h"
 #include "scene/convex.h"
+#include "scene/lattice.h"
 #include "scene/mass.h"
 #include "scene/motion.h"
 #include "scene/sample_solid.h"
@@ -487,13 +488,17 @@ private:
         const size_t slots = (walls.size() + clusterSize - 1) / clusterSize * clusterSize;
         std::vector<int> solidOf(slots, -1);
         std::vector<real> mass(slots), area(floats_ ? size_t(vectorSize(int(slots))) : 0);
+        // Volumes are of cells a spacing wide, masses of the fluid's particles.
+        const double dx = scene.simulation.spacing, cell = std::pow(dx, scene.simulation.dimensions);
+        const float share = hasOwnVolume(scene) ? float(cell / particleVolume(scene)) : 1;
         size_t end = 0;
         for (size_t s = 0; s < scene.solids.size(); ++s) {
             const SolidSample sample = sampleSolid(scene, scene.solids[s]);
             const std::vector<float>& volumes = sample.volumes;
             if (sizes.size() <= s || volumes.size() != size_t(sizes[s]))
                 throw Error(Exit::Scene, "solids: the particles of this run are of another version of the program; start the scene again");
-            std::copy(volumes.begin(), volumes.end(), mass.begin() + long(end));
+            std::transform(volumes.begin(), volumes.end(), mass.begin() + long(end),
+                           [&](float v) { return real(v * share); });
             std::fill_n(solidOf.begin() + long(end), sizes[s], int(s));
             if (scene.solids[s].floats()) fillAreas(scene, scene.solids[s], sample, int(end), area);
             end += volumes.size();

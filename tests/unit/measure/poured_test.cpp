@@ -36,5 +36,26 @@ TEST(Poured, IsWhatTheLatticeHoldsOfTheMesh) {
     EXPECT_NEAR(half[0].mass, 200, 45) << "an obstacle takes half of it";
 }
 
+std::vector<std::string> amissIn(const std::string& bodies) {
+    Scene scene;
+    scene.simulation.spacing = 0.1f;
+    scene.domain.max = {1, 2, 1};
+    scene.compute.threads = 1;
+    setKnob(scene, "fluid.bodies=" + bodies);
+    return pouredAmiss(scene, *makeSimulation(scene));
+}
+
+TEST(Poured, TellsWhichFluidHasMoreOrLessThanItsBodiesHold) {
+    EXPECT_TRUE(amissIn(R"([{"max":[1,1.04,0.97]}])").empty()) << "layers fit";
+    const auto round = amissIn(R"([{"shape":"sphere","center":[0.5,1,0.5],"radius":0.32}])");
+    ASSERT_EQ(round.size(), 1u);
+    EXPECT_NE(round[0].find("than its body holds"), std::string::npos) << round[0];
+    // Layers of the one are as high as those of the other.
+    const auto two = amissIn(R"([{"max":[1,0.237,1]},)"
+                             R"({"min":[0,0.237,0],"max":[1,2,1],"rest_density":500}])");
+    ASSERT_GE(two.size(), 1u);
+    EXPECT_NE(two[0].find("than fluid.bodies[0] holds"), std::string::npos) << two[0];
+}
+
 }  // namespace
 }  // namespace spindrift

@@ -8,6 +8,7 @@
 #include "scene/json.h"
 #include "sim/simulation.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -82,6 +83,7 @@ TEST_F(ParticleFiles, WhatIsWrittenIsReadBitByBit) {
         const double s = std::sin(i + 0.1);
         t.positions.push_back({s, 1e-20 * s, 1e10 / (i + 1)}), t.velocities.push_back({-s, s / 3, double(float(s))});
         t.densities.push_back(1000 + s), t.pressures.push_back(-1e5 * s);
+        t.masses.push_back(0.008 + s / 1000);
     }
     for (const char* name : {"t.csv", "t.h5"}) {
         const std::string path = (folder / name).string();
@@ -91,10 +93,41 @@ TEST_F(ParticleFiles, WhatIsWrittenIsReadBitByBit) {
         EXPECT_EQ(again.velocities, t.velocities) << name;
         EXPECT_EQ(again.densities, t.densities) << name;
         EXPECT_EQ(again.pressures, t.pressures) << name;
+        EXPECT_EQ(again.masses, t.masses) << name;
         EXPECT_EQ(countParticlesIn(path), 5000) << name;
     }
     EXPECT_FALSE(writeParticles("/nowhere/t.csv", false, t));
     EXPECT_FALSE(writeParticles("/nowhere/t.h5", true, t));
+}
+
+TEST_F(ParticleFiles, AMassIsThatOfAllParticlesOfTheScene) {
+    // 0.9 kg of 1000 kg/m^3 are 0.0009 m^3, the cube of 0.0965 m.
+    auto lattice = [](double side, const char* name, double mass, double otherMass) {
+        std::string text = std::string("x,y,z,") + name + "\n";
+        for (int i = 0; i < 1000; ++i)
+            text += fmt::format("{},{},{},{}\n", -1 + (i % 10 + 0.5) * side,
+                                2 + (i / 10 % 10 + 0.5) * side, 3 + (i / 100 + 0.5) * side,
+                                i < 999 ? mass : otherMass);
+        return text;
+    };
+    const double side = std::cbrt(0.0009);
+    Scene scene = sceneOf(write(lattice(side, "Mass [kg]", 0.9, 0.9)), Formulation::Wcsph);
+    EXPECT_NO_THROW(checkScene(scene));
+    EXPECT_NEAR(particleMass(scene), 0.9, 1e-6);
+    EXPECT_EQ(massInFile(write(lattice(side, "rho", 1000, 1000), "b.csv")), 0);
+    auto refused = [&](const std::string& path, const std::string& words) {
+        try {
+            checkScene(sceneOf(path, Formulation::Wcsph));
+            ADD_FAILURE() << words;
+        } catch (const Error& e) {
+            EXPECT_NE(std::string(e.what()).find(words), std::string::npos) << e.what();
+        }
+    };
+    refused(write(lattice(side, "mass", 0.9, 0.8), "c.csv"), "give each fluid a file of its own");
+    refused(write(lattice(side, "mass", 0.5, 0.5), "d.csv"), "m apart in the mean, by their mass");
+    scene.fluid.bodies.push_back(scene.fluid.bodies[0]);
+    scene.fluid.bodies[1].path = write(lattice(0.0001, "mass", 1, 1), "e.csv");
+    EXPECT_THROW(checkScene(scene), Error);
 }
 
 TEST_F(ParticleFiles, UnitsOfTheHeaderAreHonouredOrRefused) {
@@ -129,6 +162,7 @@ TEST_F(ParticleFiles, MistakesAreNamedByLine) {
     expectComplaint("x,y,z\n1,2 3,3\n", "line 2: y is no number");
     expectComplaint("x,y,z\n1,2,nan\n", "line 2: z is no number");
     expectComplaint("x,y,z,rho\n1,2,3,-4\n", "line 2: rho = -4 kg/m³ is below 0");
+    expectComplaint("x,y,z,mass\n1,2,3,0\n", "line 2: mass = 0 kg is not above 0");
     expectComplaint("x,y,z\n1,2\n1,2,3,4\n1,2,3\n\n1\n1\n", "line 2: 2 values for 3 columns; line 3: 4 values for 3 columns; "
                                                             "line 6: 1 values for 3 columns; and 1 more");
     expectComplaint("x,y,z,vx\n1,2,3,4\n", "has some of the columns vx, vy, vz");
