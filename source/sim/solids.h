@@ -269,11 +269,6 @@ struct SumSolidLoad {
 // Without the fluid's pressure there it would be pressed against them, the more the deeper it is. So
 // near them the pressure that fluid at rest would have acts on its closed surface, and what particles
 // of fluid press with counts from there: what they don't, the ground takes.
-struct FloatingParticle {
-    Vector<real> place;           // the image next to its solid's middle
-    real depth;                   // m
-    Vector<real> area;            // as at home
-};
 struct BesideGround {
     View v;
     WallsAtHome home;
@@ -281,18 +276,23 @@ struct BesideGround {
     int solid;
     VectorField pressure, seen, seenAtRest;   // as ComputeWallLoads found them
 
-    HD const RigidBody& body() const { return bodies[solid]; }
     HD bool has(int i) const { return v.walls.id[i] >= 0 && home.solidOf(v.walls.id[i]) == solid; }
-    HD FloatingParticle at(int i) const {
-        const SolidState& s = v.solids[solid];
-        const int k = v.walls.id[i] - home.firstId;
-        Vector<real> normal{0, 0, 0};
-        return {s.middle + imageOf(v.c, load(v.walls.position, i) - s.middle),
-                -surface(s, load(home.position, k) - s.home, normal), load(home.area, k)};
+    HD real spacing() const { return bodies[solid].deepestBall / real(0.75); }
+    // The image next to the solid's middle.
+    HD Vector<real> placeOf(int i) const {
+        const Vector<real> middle = v.solids[solid].middle;
+        return middle + imageOf(v.c, load(v.walls.position, i) - middle);
     }
-    HD bool isOutermost(const FloatingParticle& p) const { return p.depth <= body().deepestBall; }
-    HD real gapOf(const FloatingParticle& p) const {
-        return isOutermost(p) ? min(toBox(p.place), toSolids(p.place)) - p.depth : real(1e30);
+    // Its share of the surface, in the solid's own axes; 0 but for the outermost.
+    HD Vector<real> areaOf(int i) const { return load(home.area, v.walls.id[i] - home.firstId); }
+    // m, from the surface.
+    HD real gapAt(int i) const {
+        const Vector<real> area = areaOf(i), x = placeOf(i);
+        if (dot(area, area) == 0) return real(1e30);
+        const SolidState& s = v.solids[solid];
+        Vector<real> normal{0, 0, 0};
+        const real depth = -surface(s, load(home.position, v.walls.id[i] - home.firstId) - s.home, normal);
+        return min(toBox(x), toSolids(x)) - depth;
     }
     HD real toBox(Vector<real> x) const {
         const Constants& c = v.c;
@@ -324,15 +324,15 @@ struct FindGap {
     HD void addTo(Gap& sum, int i) const {
         if (!beside.has(i)) return;
         const Vector<real> seen = load(beside.seen, i);
-        sum.add({beside.gapOf(beside.at(i)), {seen.x, seen.y, seen.z}});
+        sum.add({beside.gapAt(i), {seen.x, seen.y, seen.z}});
     }
 };
 struct FindPressureAround {
     BesideGround beside;
     const Gap* gap;
     HD void addTo(PressureAround& sum, int i) const {
-        if (!beside.has(i)) return;
-        const Vector<real> x = beside.at(i).place, seen = load(beside.seen, i);
+        if (gap->narrowness(beside.spacing()) <= 0 || !beside.has(i)) return;
+        const Vector<real> x = beside.placeOf(i), seen = load(beside.seen, i);
         const Vector<real> felt = load(beside.pressure, i) - load(beside.seenAtRest, i);
         const double(&pressed)[3] = gap->pressed;
         auto along = [&](Vector<real> a) LANE_CALL {
@@ -348,16 +348,15 @@ struct PressFromGaps {
     const Gap* gap;
     const PressureAround* around;
     HD void operator()(int i) const {
-        const real share = gap->narrowness(beside.body().deepestBall / real(0.75));
+        const real share = gap->narrowness(beside.spacing());
         if (share <= 0 || !beside.has(i)) return;
         const View& v = beside.v;
-        const FloatingParticle p = beside.at(i);
-        const Vector<real> pull = bodyForce(v.c, gravityNow(v), p.place);
-        const real rest = share * around->at(p.place, pull, v.c.restDensity);
+        const Vector<real> x = beside.placeOf(i), pull = bodyForce(v.c, gravityNow(v), x);
+        const real rest = share * around->at(x, pull, v.c.restDensity);
         if (rest <= 0) return;
         const Vector<real> atRest = share * load(beside.seenAtRest, i);
         Vector<real> change = real(-2) * rest * load(beside.seen, i) - atRest;
-        const Vector<real> area = turned(v.solids[beside.solid], p.area);
+        const Vector<real> area = turned(v.solids[beside.solid], beside.areaOf(i));
         change = subtractScaled(change, rest * v.c.restDensity * v.c.restDensity, area);
         store(beside.pressure, i, load(beside.pressure, i) + change);
     }
