@@ -80,9 +80,17 @@ std::vector<SolidMotion> motionsOf(const std::vector<double>& numbers) {
     return out;
 }
 
+// A run that goes on needs no file of particles any more.
+std::string sceneWithoutFiles(Scene scene) {
+    const double volume = particleVolume(scene);
+    for (Body& body : scene.fluid.bodies)
+        if (body.shape == Shape::File) body.mass = float(restDensity(scene, body) * volume);
+    return writeScene(scene);
+}
+
 void writeAll(hid_t file, const Scene& scene, const RunState& s,
               const std::vector<CurvePoint>& curves) {
-    const std::string text = writeScene(scene);
+    const std::string text = sceneWithoutFiles(scene);
     hdf5::writeArray(file, Format, H5T_STD_U8LE, H5T_NATIVE_UCHAR, text.data(), {text.size(), 1});
     writeNumbers(file, "version", {double(Version)});
     writeNumbers(file, "clock", {s.clock.time, s.clock.dt, double(s.clock.steps)});
@@ -94,7 +102,12 @@ void writeAll(hid_t file, const Scene& scene, const RunState& s,
     if (!s.particles.solidSizes.empty())
         writeNumbers(file, "solid sizes", std::vector<double>(s.particles.solidSizes.begin(), s.particles.solidSizes.end()));
     if (!s.particles.bodies.empty()) hdf5::writeArray(file, "bodies", H5T_STD_U16LE, H5T_NATIVE_UINT16, s.particles.bodies.data(), {s.particles.bodies.size(), 1});
-    if (!s.solids.empty()) writeNumbers(file, "solid motions", numbersOf(s.solids));
+    if (!s.solids.empty()) {
+        writeNumbers(file, "solid motions", numbersOf(s.solids));
+        std::vector<double> left;
+        for (const SolidMotion& m : s.solids) left.push_back(m.left);
+        writeNumbers(file, "keyframes left", left);
+    }
     if (!s.objects.positions.empty()) {
         writeVectors(file, "object positions", "m", s.objects.positions);
         writeVectors(file, "object velocities", "m/s", s.objects.velocities);
@@ -149,7 +162,12 @@ Checkpoint readAll(hid_t file, const std::string& path) {
     c.state.particles.velocities = readVectors(file, "velocities");
     c.state.particles.walls = readVectors(file, "walls");
     if (!c.scene.solids.empty()) readSolidSizes(file, c);
-    if (H5Aexists(file, "solid motions") > 0) c.state.solids = motionsOf(readNumbers(file, "solid motions", 13 * c.scene.solids.size()));
+    const size_t solids = c.scene.solids.size();
+    if (H5Aexists(file, "solid motions") > 0) c.state.solids = motionsOf(readNumbers(file, "solid motions", 13 * solids));
+    if (H5Aexists(file, "keyframes left") > 0) {   // none in older files
+        const std::vector<double> left = readNumbers(file, "keyframes left", solids);
+        for (size_t k = 0; k < c.state.solids.size(); ++k) c.state.solids[k].left = left[k];
+    }
     const auto floats = [](const Solid& s) { return s.floats(); };
     if (c.state.solids.empty() && std::any_of(c.scene.solids.begin(), c.scene.solids.end(), floats)) throw Trouble{"solid motions"};
     if (!c.scene.objects.empty()) readObjects(file, c);

@@ -100,12 +100,13 @@ double stepAlong(const Scene& scene, int axis) {
     return best;
 }
 
-// Of the particles of files, 0 where there are none that say.
+// Of the particles of files, 0 where there are none that say. A checkpoint's scene says it itself, in
+// single precision: the file may be gone.
 double volumeInFiles(const Scene& scene) {
     for (const Body& body : scene.fluid.bodies) {
         if (body.shape != Shape::File) continue;
-        if (const double mass = massInFile(body.path); mass > 0)
-            return mass / double(restDensity(scene, body));
+        const float mass = body.mass > 0 ? body.mass : float(massInFile(body.path));
+        if (mass > 0) return double(mass) / double(restDensity(scene, body));
     }
     return 0;
 }

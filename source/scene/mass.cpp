@@ -47,6 +47,20 @@ void invertTransposed(const Vec3d (&m)[3], Vec3d (&inverse)[3]) {
     inverse[0] = perDeterminant * x, inverse[1] = perDeterminant * y, inverse[2] = perDeterminant * z;
 }
 
+// The sum of the outward normals of all faces that p is near to: at edges there are several.
+static Vec3d normalsNear(const Convex& shape, Vec3d p, double near) {
+    if (shape.mesh) {
+        const auto nearest = shape.nearest(p);
+        return -nearest.distance <= near ? nearest.normal : Vec3d{};
+    }
+    Vec3d sum{0, 0, 0};
+    for (int k = 0; k < shape.planes; ++k)
+        if (shape.offset[k] - dot(shape.normal[k], p) <= near) sum = sum + shape.normal[k];
+    const Vec3d d{shape.across.x * p.x, shape.across.y * p.y, shape.across.z * p.z};
+    if (shape.radius > 0 && shape.radius - length(d) <= near) sum = sum + (1 / length(d)) * d;
+    return sum;
+}
+
 // With a = w (n - mean of n) the areas close. With G = sum x (x) a they make the force -G^T g of a
 // pressure g.x: multiplied by V G^-T it is -V g.
 std::vector<Vec3d> surfaceAreas(const Scene& scene, const Solid& solid, const SolidSample& sample) {
@@ -58,10 +72,10 @@ std::vector<Vec3d> surfaceAreas(const Scene& scene, const Solid& solid, const So
     double all = 1e-30;
     auto armOf = [&](size_t i) { return toDouble(sample.positions[i] + scene.domain.min) - shape.middle; };
     for (size_t i = 0; i < areas.size(); ++i) {
-        const auto nearest = shape.nearest(armOf(i));
-        if (-nearest.distance > outermost) continue;
+        const Vec3d normal = normalsNear(shape, armOf(i), outermost);
+        if (normal == Vec3d{}) continue;
         weights[i] = sample.volumes[i];
-        areas[i] = weights[i] * nearest.normal;
+        areas[i] = weights[i] * normal;
         slant = slant + areas[i], all += weights[i];
     }
     Vec3d moments[3] = {};
@@ -70,6 +84,8 @@ std::vector<Vec3d> surfaceAreas(const Scene& scene, const Solid& solid, const So
         for (int k = 0; k < 3; ++k) moments[k] = moments[k] + armOf(i)[k] * areas[i];
     }
     if (scene.simulation.dimensions == 2) moments[2] = {0, 0, moments[0].x + moments[1].y};
+    const double size = (moments[0].x + moments[1].y + moments[2].z) / 3;
+    if (dot(moments[0], cross(moments[1], moments[2])) < 1e-3 * size * size * size) return std::vector<Vec3d>(areas.size());
     Vec3d toVolume[3];
     invertTransposed(moments, toVolume);
     const double volume = massOf(scene, solid).mass / double(solid.density);

@@ -16,8 +16,9 @@ constexpr double Radius = 2.6;
 constexpr int Steps = 100;
 // The way of a step is so much R^2 grad C (0.2 is unstable), and never more than so many spacings.
 constexpr double Strength = 0.1, Longest = 0.2;
-// The share of a step's way that the next one goes on with (Polyak 1964): what is uneven over many
-// spacings fades several times faster, forces that push particles from their places by four.
+// The share of a step's way that the next one goes on with (Polyak 1964), beside boundary particles: what
+// is uneven over many spacings fades several times faster, forces that push particles from their places
+// by four. Drops in free space, so packed, lie in rows and swing 8.5 instead of 4.8 % too slowly.
 constexpr double Momentum = 0.8;
 
 // What repels: places and volumes, sorted into cells that are at least a radius wide.
@@ -151,9 +152,10 @@ void relax(std::vector<Vec3d>& positions, const Region& region, double spacing, 
         return x;
     };
     std::vector<Vec3d> ways(positions.size());   // of the step before
+    const double momentum = region.boundary.empty() ? 0 : Momentum;
     auto moved = [&](Vec3d x, Vec3d& before) {
         const Vec3d push = crowd.push(x) + surroundings.push(x);
-        Vec3d way = (20 * norm * Strength) * push + Momentum * before;
+        Vec3d way = (20 * norm * Strength) * push + momentum * before;
         if (d == 2) way.z = 0;
         const double far = length(way), most = Longest * spacing;
         way = (far > most ? most / far : 1) * way;

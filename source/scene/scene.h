@@ -58,6 +58,7 @@ struct Body : Form {
     float viscosity = -1;                       // Pa s, -1 = the fluid's
     StartPressure pressure = StartPressure::None;   // where a field has its own, that is added
     std::string name{};                         // of its fluid, in the legend; "" = by its density
+    float mass = 0;                             // kg, of a particle of a file; 0 = its column says
 };
 
 // Where a solid is at one time, relative to its place in the scene.

@@ -114,6 +114,8 @@ void visitMember(B& b, const std::string& at, Visitor&& visit) {
                    "CSV with a header, or HDF5: x, y, z, and if there are any vx, vy, vz, rho, p, mass; all of them are taken, also inside "
                    "other bodies. Without mass each has that of spacing^3. As output.particles writes it; a relative path starts at the scene file",
                    Restart});
+        visit(at + ".mass", b.mass,
+              Knob{"kg", 0, 1e9f, "of each particle, in two dimensions of a metre of depth; 0 = as the file says", Restart});
         return;
     }
     visit(at + ".velocity", b.velocity, Knob{"m/s", -1e3f, 1e3f, "initial velocity", Restart});

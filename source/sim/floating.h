@@ -166,6 +166,7 @@ struct MoveFloating {
         SolidMotion& m = motions[s];
         m.velocity = {0, 0, 0};
         if (hold.solid != s) return;
+        if (m.left < 0 && !v.solids[s].steady) m.left = v.state->time - dt;
         const Vector<real> at = v.solids[s].middle;
         const Vec3d wanted = (1 / (dt > time ? dt : time)) * (Vec3d{hold.target.x, hold.target.y, hold.target.z} - Vec3d{at.x, at.y, at.z});
         const double speed = sqrt(dot(wanted, wanted));
@@ -177,6 +178,16 @@ struct MoveFloating {
         const Constants& c = v.c;
         return {x.x - c.period.x * floor(x.x * c.inversePeriod.x), x.y - c.period.y * floor(x.y * c.inversePeriod.y),
                 x.z - c.period.z * floor(x.z * c.inversePeriod.z)};
+    }
+};
+
+// What the mouse no longer holds stands still, but for what floats.
+struct LetGo {
+    using Index = int;
+    const RigidBody* bodies;
+    SolidMotion* motions;
+    HD void operator()(int s) const {
+        if (bodies[s].mass <= 0) motions[s].velocity = {0, 0, 0};
     }
 };
 
@@ -219,6 +230,7 @@ public:
     Springs springs() const { return springs_; }
     const RigidBody* bodies() const { return bodies_.data(); }
     const SolidMotion* motions() const { return motions_.data(); }
+    void letGo() { device_.forEach(int(onHost_.size()), LetGo{bodies_.data(), motions_.data()}); }
 
     // `sum(solid)` is the reduction of what fluid does to it.
     template <class Sum> void findForces(const Scene& scene, const View& v, const WallsAtHome& home, const Sum& sum) {

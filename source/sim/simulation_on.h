@@ -79,6 +79,7 @@ public:
     void hold(const Hold& h) override {
         CHECK(h.solid < solids_.count());
         if (h.solid >= 0) letSolidsMove();
+        if (h.solid != hold_.solid) floating_.letGo();
         hold_ = {h.solid, h.target - scene_.domain.min};
         refresh(scene_);
     }

@@ -10,6 +10,7 @@ struct SolidMotion {
     Vec3d place, velocity;
     double turn[4] = {1, 0, 0, 0};   // quaternion, real part first
     Vec3d angularMomentum;
+    double left = -1;   // s, when the mouse took it from its keyframes, for good; -1: it follows them
 };
 
 // A solid held by the mouse, which wants its middle at `target`, m, world coordinates.

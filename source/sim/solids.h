@@ -45,7 +45,9 @@ struct MoveSolids {
     HD void operator()(int i) const {
         SolidState& s = solids[i];
         if (bodies[i].mass > 0) return placeFloating(s, bodies[i], motions[i], ahead * state->dt);
-        const KeyedMotion m = motionAt(keys, s.firstKey, s.endKey, state->time - stepsBack * state->dt);
+        const double left = motions[i].left, now = state->time - stepsBack * state->dt;
+        KeyedMotion m = motionAt(keys, s.firstKey, s.endKey, left >= 0 && left < now ? left : now);
+        if (left >= 0) m.velocity = {0, 0, 0}, m.turnRate = 0;
         s.middle = s.home + Vector<real>{real(m.offset.x), real(m.offset.y), real(m.offset.z)};
         s.velocity = Vector<real>{real(m.velocity.x), real(m.velocity.y), real(m.velocity.z)};
         turn(s, m.turn, m.turnRate);
@@ -395,6 +397,7 @@ public:
             states.back().firstKey = int(keys.size());
             for (const MotionKey& key : motionOf(solid)) keys.push_back(key);
             states.back().endKey = int(keys.size());
+            states.back().steady = solid.keyframes.empty();
             speed_ = std::max(speed_, spindrift::largestSpeed(solid));
         }
         count_ = int(states.size()), firstId_ = firstId;

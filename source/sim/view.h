@@ -161,6 +161,7 @@ struct SolidState {
     Vector<real> velocity, spin;   // m/s, rad/s
     Vector<real> axis[3];          // its own axes in space
     int firstKey, endKey;          // of its motion
+    bool steady;                   // which goes on and on
     int spinAxis;
     int planes;
     Vector<real> normal[Convex::mostPlanes];

@@ -142,9 +142,12 @@ TEST_F(CommandLine, ProbesInsideASolidAreNamed) {
                                 "'output.probes=[{{\"name\":\"p\",\"position\":[{},0.15,0.4]}}]'", x),
                     "2>&1 >/dev/null").text;
     };
-    EXPECT_EQ(said("0.75"), "spindrift: output.probes[0] (p) is inside solids[2]: no fluid can be read "
-                            "there; move one of the two\n");
-    EXPECT_EQ(said("0.5"), "");
+    const std::string inside = "spindrift: output.probes[0] (p) is inside solids[2]: no fluid can be "
+                               "read there; move one of the two\n";
+    const std::string text = said("0.75");
+    EXPECT_EQ(text.find(inside), text.rfind(inside)) << text;
+    EXPECT_NE(text.find(inside), std::string::npos) << text;
+    EXPECT_EQ(said("0.5").find("output.probes"), std::string::npos);
 }
 
 TEST_F(CommandLine, ProbesAreColumnsInEveryFormat) {
@@ -207,6 +210,7 @@ TEST_F(CommandLine, ARunInTroubleGoesOnWithShorterSteps) {
     double last = -1;
     int rows = 0;
     for (std::getline(csv, line); std::getline(csv, line); ++rows) {
+        if (line.starts_with('#')) continue;   // a remark
         EXPECT_GT(std::stod(line), last);
         last = std::stod(line);
     }
@@ -218,7 +222,8 @@ TEST_F(CommandLine, AGivenUpRunLeavesItsLastGoodState) {
         Small + "--steps 1000000 --set time.mode=fixed --set time.step=0.5 --checkpoint last.h5 --quiet --set time.retries=1");
     EXPECT_EQ(outcome.code, int(Exit::Diverged)) << outcome.text;
     EXPECT_NE(outcome.text.find("; particle "), std::string::npos) << outcome.text;
-    EXPECT_EQ(std::count(outcome.text.begin(), outcome.text.end(), '\n'), 2) << "one line a try, one for the end: " << outcome.text;
+    EXPECT_EQ(std::count(outcome.text.begin(), outcome.text.end(), '\n'), 3)
+        << "one line a try, one for the compression, one for the end: " << outcome.text;
     EXPECT_EQ(call("last.h5 --headless --quiet --set time.mode=cfl --steps 50").code, 0);
 }
 

@@ -21,7 +21,7 @@ TEST_F(Validate, WritesFiguresAndAChart) {
 }
 
 TEST_F(Validate, MissedTargetsAndMistakesHaveTheirCodes) {
-    const Outcome missed = call("validate poiseuille --resolution 40 --set walls.kind=reflect");
+    const Outcome missed = call("validate poiseuille --resolution 40 --set walls.moving_face=y_max --set walls.velocity=0.1,0,0");
     EXPECT_EQ(missed.code, int(Exit::Different)) << missed.text;
     EXPECT_NE(missed.text.find("MISSED"), std::string::npos);
     expectMistake("validate couete", Exit::Usage, "did you mean couette?");

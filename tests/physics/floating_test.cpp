@@ -231,6 +231,29 @@ TEST(Floating, MouseDragsThem) {
     }
 }
 
+// A plate that the mouse takes from its keyframes stays where it is left, also in a run that goes on;
+// one that turns on and on turns there.
+TEST(Floating, WhatIsDraggedLeavesItsKeyframes) {
+    for (const char* motion : {R"("keyframes":[[0,0,0,0],[1,0.5,0,0]])", R"("spin":360)"}) {
+        const Scene scene = sceneOf({std::string(R"(solids=[{"shape":"block","min":[0.1,0.4,0.4],"max":[0.2,0.6,0.6],)") + motion + "}]"});
+        auto simulation = makeSimulation(scene);
+        runUntil(*simulation, 0.1);
+        simulation->hold({0, {0.4f, 0.5f, 0.5f}});
+        runUntil(*simulation, 0.5);
+        simulation->hold({});
+        runUntil(*simulation, 0.6);
+        auto goesOn = makeSimulation(scene, simulation->state());
+        runUntil(*simulation, 0.9);
+        runUntil(*goesOn, 0.9);
+        for (Simulation* s : {simulation.get(), goesOn.get()}) {
+            const SolidMeasurement solid = s->measure().solids[0];
+            EXPECT_NEAR(solid.position.x, 0.4, 0.01) << motion;
+            EXPECT_EQ(length(solid.velocity), 0) << motion;
+            EXPECT_EQ(length(solid.spin) > 0, std::string(motion).find("spin") != std::string::npos);
+        }
+    }
+}
+
 TEST(Floating, MassesAreThoseOfTheShapes) {
     auto massOfSolid = [](const std::string& solid, int dimensions = 3) {
         Scene scene = sceneOf({"solids=[" + solid + "]", "simulation.dimensions=" + std::to_string(dimensions)});

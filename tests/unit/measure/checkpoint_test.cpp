@@ -194,6 +194,7 @@ TEST_F(Checkpoints, HoldSolidsThatFloatAndObjects) {
     for (size_t k = 0; k < 3; ++k) {
         EXPECT_EQ(c.state.solids[k].place, left.solids[k].place);
         EXPECT_EQ(c.state.solids[k].velocity, left.solids[k].velocity);
+        EXPECT_EQ(c.state.solids[k].left, left.solids[k].left);
         EXPECT_EQ(c.state.solids[k].angularMomentum, left.solids[k].angularMomentum);
         for (int q = 0; q < 4; ++q) EXPECT_EQ(c.state.solids[k].turn[q], left.solids[k].turn[q]);
     }

@@ -559,7 +559,9 @@ TEST(MeshSolids, HoldFluid) {
             EXPECT_LE(int64_t(p.positions.size()), countParticles(scene).fluid);
             for (const Vec3& x : p.positions)
                 ASSERT_LT(mesh->nearest(toDouble(x)).distance, 0.1 * dx);
-            if (name == std::string("box")) EXPECT_EQ(p.positions.size(), ofBlock.positions.size());
+            if (name == std::string("box")) {
+                EXPECT_EQ(p.positions.size(), ofBlock.positions.size());
+            }
         }
 }
 
