@@ -57,7 +57,7 @@ static Vec3d normalsNear(const Convex& shape, Vec3d p, double near) {
     for (int k = 0; k < shape.planes; ++k)
         if (shape.offset[k] - dot(shape.normal[k], p) <= near) sum = sum + shape.normal[k];
     const Vec3d d{shape.across.x * p.x, shape.across.y * p.y, shape.across.z * p.z};
-    if (shape.radius > 0 && shape.radius - length(d) <= near) sum = sum + (1 / length(d)) * d;
+    if (shape.radius > 0 && length(d) > 0 && shape.radius - length(d) <= near) sum = sum + (1 / length(d)) * d;
     return sum;
 }
 
@@ -85,7 +85,8 @@ std::vector<Vec3d> surfaceAreas(const Scene& scene, const Solid& solid, const So
     }
     if (scene.simulation.dimensions == 2) moments[2] = {0, 0, moments[0].x + moments[1].y};
     const double size = (moments[0].x + moments[1].y + moments[2].z) / 3;
-    if (dot(moments[0], cross(moments[1], moments[2])) < 1e-3 * size * size * size) return std::vector<Vec3d>(areas.size());
+    const double determinant = dot(moments[0], cross(moments[1], moments[2]));
+    if (!(determinant > 1e-3 * size * size * size)) return std::vector<Vec3d>(areas.size());
     Vec3d toVolume[3];
     invertTransposed(moments, toVolume);
     const double volume = massOf(scene, solid).mass / double(solid.density);
