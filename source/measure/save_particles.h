@@ -11,8 +11,8 @@ namespace spindrift {
 void saveParticles(const std::string& path, const std::vector<Particle>&,
                    const std::vector<double>& masses = {});
 
-// Of each particle in the order of their ids; none where a particle's volume is spacing^3, as whoever
-// reads the file takes it then.
+// Of each particle in the order of their ids; none where a particle's volume is spacing^3, which is
+// what a reader of the file takes it for.
 std::vector<double> massesToSave(const Scene&, Simulation&);
 
 }  // namespace spindrift

@@ -4,8 +4,9 @@
 
 namespace spindrift {
 
-// Of one that floats: its centre of mass, m from the domain's lower corner, its velocity, its turn from its place in the scene, and its angular
-// momentum, kg m^2/s. Of another one: how far it has been dragged away from where it is prescribed to be, and how fast it is being dragged.
+// Of one that floats: its centre of mass, m from the domain's lower corner, its velocity, its turn from
+// its place in the scene, and its angular momentum, kg m^2/s. Of another one: how far it has been dragged
+// away from where its motion has it, or had it when the mouse took it, and how fast it is being dragged.
 struct SolidMotion {
     Vec3d place, velocity;
     double turn[4] = {1, 0, 0, 0};   // quaternion, real part first

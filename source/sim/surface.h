@@ -54,9 +54,9 @@ struct TagSurface {
     }
 };
 
-// A surface bounds fluid: who has less company than four fifths of what a corner of a block of fluid
-// has, walls not counted, is spray. Single drops and the first few that meet have one-sided
-// surroundings too, at walls above all.
+// A surface bounds fluid. A particle whose sum of W over the fluid is less than four fifths of that in
+// a corner of a block is spray, walls not counted: single drops and the first few that meet have
+// one-sided surroundings too, at walls above all.
 struct LeaveOutSpray {
     using Kernel = MeanKernel;
     using Index = Group;

@@ -22,7 +22,7 @@ Spent run(Team& team, const Cost& cost, int steps) {
     return {ms, team.size()};
 }
 
-// A machine of our own, and one on which every thread but the first waits for somebody else.
+// A machine of our own, and one on which every thread but the first waits for another program.
 Cost calm(double ms) {
     return [=](int threads) { return ms * (0.05 + 0.95 / threads); };
 }

@@ -57,7 +57,7 @@ TEST(TimeSeries, GoesOnHoweverUnitsWereSpelt) {
     for (const char* other : {"g/cm^3", "Pa", ""}) EXPECT_THROW(goOn(other), Error) << other;
 }
 
-// One line for each key, among the rows; who reads the file again has it at the same place.
+// One line for each key, among the rows; reading the file again gives it at the same place.
 TEST(TimeSeries, RemarksStandOnceAmongTheRowsInEveryFormat) {
     TimeSeries series;
     Measurement m;

@@ -318,7 +318,7 @@ TEST_F(ParticleFiles, DensitiesInAnotherUnitAreRefused) {
     EXPECT_EQ(refusalOf(sceneOf(write("x,y,z,rho [g/cm^3]" + row), Formulation::DeltaSph)), "");
 }
 
-// In the classic formulation nobody counts itself: a drop alone has no density.
+// In the classic formulation a particle does not count itself: a drop alone has no density.
 TEST_F(ParticleFiles, LoneParticlesOfTheClassicFormulationAreTaken) {
     Scene scene;
     scene.compute.backend = Backend::Cpu;
