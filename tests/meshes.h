@@ -17,7 +17,7 @@ namespace spindrift {
 
 struct Surface {
     std::vector<Vec3d> vertices;
-    std::vector<std::vector<int>> faces;   // from 0 on, against the clock seen from outside
+    std::vector<std::vector<int>> faces;  // from 0 on, against the clock seen from outside
     std::string text() const {
         std::ostringstream out;
         out.precision(9);
@@ -74,7 +74,8 @@ struct Surface {
     // glTF 2.0 of triangles, whose bytes are in the text itself, and its binary kind; a node that
     // moves and scales what it holds.
     std::string textAsGltf(Vec3d translation = {0, 0, 0}, double scale = 1) const {
-        return gltf("data:application/octet-stream;base64," + inBase64(gltfBytes()), translation, scale);
+        return gltf("data:application/octet-stream;base64," + inBase64(gltfBytes()), translation,
+                    scale);
     }
     std::string textAsGlb() const {
         std::string json = gltf("", {0, 0, 0}, 1), bytes = gltfBytes(), out = "glTF";
@@ -136,7 +137,8 @@ private:
     std::string gltf(const std::string& uri, Vec3d translation, double scale) const {
         Vec3d low = vertices[0], high = low;
         for (const Vec3d& p : vertices)
-            for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]);
+            for (int k = 0; k < 3; ++k)
+                low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]);
         std::ostringstream out;
         out.precision(9);
         const auto vector = [&](const char* name, Vec3d v) {
@@ -146,7 +148,8 @@ private:
         out << R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,)";
         vector("translation", translation), out << ",", vector("scale", {scale, scale, scale});
         out << R"(}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],"accessors":[)"
-            << R"({"bufferView":0,"componentType":5126,"type":"VEC3","count":)" << vertices.size() << ",";
+            << R"({"bufferView":0,"componentType":5126,"type":"VEC3","count":)" << vertices.size()
+            << ",";
         vector("min", low), out << ",", vector("max", high);
         out << R"(},{"bufferView":1,"componentType":5125,"type":"SCALAR","count":)" << indices
             << R"(}],"bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":)" << places
@@ -173,7 +176,9 @@ private:
 
 inline Surface boxSurface(Vec3d low, Vec3d high) {
     Surface s;
-    for (int k = 0; k < 8; ++k) s.vertices.push_back({k & 1 ? high.x : low.x, k & 2 ? high.y : low.y, k & 4 ? high.z : low.z});
+    for (int k = 0; k < 8; ++k)
+        s.vertices.push_back(
+            {k & 1 ? high.x : low.x, k & 2 ? high.y : low.y, k & 4 ? high.z : low.z});
     s.faces = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
     return s;
 }
@@ -182,20 +187,25 @@ inline Surface boxSurface(Vec3d low, Vec3d high) {
 inline Surface sphereSurface(Vec3d center, double radius, int times) {
     const double g = std::numbers::phi;
     Surface s;
-    s.vertices = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g}, {0, -1, -g}, {0, 1, -g}, {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
-    s.faces = {{0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
-               {3, 9, 4}, {3, 4, 2}, {3, 2, 6}, {3, 6, 8}, {3, 8, 9}, {4, 9, 5}, {2, 4, 11}, {6, 2, 10}, {8, 6, 7}, {9, 8, 1}};
+    s.vertices = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
+                  {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
+    s.faces = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+               {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+               {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
     for (; times > 0; --times) {
         std::map<std::pair<int, int>, int> middles;
         auto middle = [&](int a, int b) {
-            const auto [at, isNew] = middles.try_emplace({std::min(a, b), std::max(a, b)}, int(s.vertices.size()));
+            const auto [at, isNew] =
+                middles.try_emplace({std::min(a, b), std::max(a, b)}, int(s.vertices.size()));
             if (isNew) s.vertices.push_back(0.5 * (s.vertices[size_t(a)] + s.vertices[size_t(b)]));
             return at->second;
         };
         std::vector<std::vector<int>> quarters;
         for (const auto& f : s.faces) {
             const int ab = middle(f[0], f[1]), bc = middle(f[1], f[2]), ca = middle(f[2], f[0]);
-            for (const std::vector<int>& q : {std::vector<int>{f[0], ab, ca}, {ab, f[1], bc}, {ca, bc, f[2]}, {ab, bc, ca}}) quarters.push_back(q);
+            for (const std::vector<int>& q :
+                 {std::vector<int>{f[0], ab, ca}, {ab, f[1], bc}, {ca, bc, f[2]}, {ab, bc, ca}})
+                quarters.push_back(q);
         }
         s.faces = quarters;
         for (Vec3d& p : s.vertices) p = normalized(p);

@@ -13,8 +13,7 @@ namespace spindrift {
 // The knobs' values, as numbers of their names.
 using Method = std::array<int, 6>;
 
-template <class Visit>
-void visitMethod(Scene& s, const Visit& visit) {
+template <class Visit> void visitMethod(Scene& s, const Visit& visit) {
     visit(0, "simulation.formulation", s.simulation.formulation);
     visit(1, "simulation.kernel", s.simulation.kernel);
     visit(2, "time.integrator", s.time.integrator);

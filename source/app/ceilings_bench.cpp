@@ -29,14 +29,16 @@ double secondsOnAllCores(const std::function<void(int)>& f) {
         std::vector<std::thread> threads;
         for (int k = 0; k < cores(); ++k) threads.emplace_back(f, k);
         for (std::thread& t : threads) t.join();
-        least = std::min(least, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+        least = std::min(
+            least, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     }
     return least;
 }
 
 typedef float Wide __attribute__((vector_size(64)));
-constexpr int chains = 8;   // independent of one another: more than an addition takes cycles
-__attribute__((target_clones("avx512f", "arch=haswell", "default"))) float multiplyAndAdd(int64_t rounds) {
+constexpr int chains = 8;  // independent of one another: more than an addition takes cycles
+__attribute__((target_clones("avx512f", "arch=haswell", "default"))) float multiplyAndAdd(
+    int64_t rounds) {
     Wide sums[chains] = {}, factor = {}, addend = {};
     for (int l = 0; l < 16; ++l) factor[l] = 0.999f, addend[l] = 0.001f * float(l);
     for (int64_t k = 0; k < rounds; ++k)
@@ -51,23 +53,27 @@ __attribute__((target_clones("avx512f", "arch=haswell", "default"))) float multi
 double peakGflops() {
     constexpr int64_t rounds = 20'000'000;
     std::vector<float> results(static_cast<size_t>(cores()));
-    const double seconds = secondsOnAllCores([&](int thread) { results[size_t(thread)] = multiplyAndAdd(rounds); });
+    const double seconds =
+        secondsOnAllCores([&](int thread) { results[size_t(thread)] = multiplyAndAdd(rounds); });
     CHECK(std::isfinite(results[0]));
     return 2.0 * 16 * chains * double(rounds) * cores() / seconds * 1e-9;
 }
 
 // Read and written, GB/s.
 double copyRate() {
-    constexpr size_t bytes = 128 << 20;   // a thread
-    std::vector<std::vector<char>> from(static_cast<size_t>(cores()), std::vector<char>(bytes, 1)), to = from;
-    const double seconds = secondsOnAllCores([&](int k) { std::memcpy(to[size_t(k)].data(), from[size_t(k)].data(), bytes); });
+    constexpr size_t bytes = 128 << 20;  // a thread
+    std::vector<std::vector<char>> from(static_cast<size_t>(cores()), std::vector<char>(bytes, 1)),
+        to = from;
+    const double seconds = secondsOnAllCores(
+        [&](int k) { std::memcpy(to[size_t(k)].data(), from[size_t(k)].data(), bytes); });
     return 2.0 * double(bytes) * cores() / seconds * 1e-9;
 }
 
 // Pairs of two different particles nearer than `radius`.
 double pairsWithin(const std::vector<Particle>& particles, float radius) {
     std::vector<Vec3> places;
-    for (const Particle& p : particles) places.push_back({float(p.position.x), float(p.position.y), float(p.position.z)});
+    for (const Particle& p : particles)
+        places.push_back({float(p.position.x), float(p.position.y), float(p.position.z)});
     std::sort(places.begin(), places.end(), [](Vec3 a, Vec3 b) { return a.x < b.x; });
     int64_t pairs = 0;
     for (size_t i = 0; i < places.size(); ++i)
@@ -78,16 +84,25 @@ double pairsWithin(const std::vector<Particle>& particles, float radius) {
     return double(pairs);
 }
 
-// What a pass does, counted in the source: operations a pair (a fused one is two, a root or a quotient one) with what both of it get, or bytes read and
-// written a particle.
-struct Work { double flopsPerPair, bytesPerParticle; };
-const std::map<std::string, Work> works = {{"sort", {0, 114}}, {"density", {19, 0}}, {"forces", {43, 0}},
-                                           {"extremes", {0, 28}}, {"integrate", {0, 60}}};
+// What a pass does, counted in the source: operations a pair (a fused one is two, a root or a
+// quotient one) with what both of it get, or bytes read and written a particle.
+struct Work {
+    double flopsPerPair, bytesPerParticle;
+};
+const std::map<std::string, Work> works = {{"sort", {0, 114}},
+                                           {"density", {19, 0}},
+                                           {"forces", {43, 0}},
+                                           {"extremes", {0, 28}},
+                                           {"integrate", {0, 60}}};
 
 void printPasses(int particles, double gflops, double gigabytes) {
     const double spacing = std::cbrt(0.6 * 0.48 * 0.6 / particles);
-    const Scene scene = chooseScene("dam_break", {{"bench", "simulation.spacing", fmt::format("{}", spacing)}, {"bench", "walls.kind", "reflect"},
-                                                  {"bench", "fluid.viscosity", "0"}, {"bench", "compute.skin", "0"}, {"bench", "compute.backend", "cpu"}});
+    const Scene scene =
+        chooseScene("dam_break", {{"bench", "simulation.spacing", fmt::format("{}", spacing)},
+                                  {"bench", "walls.kind", "reflect"},
+                                  {"bench", "fluid.viscosity", "0"},
+                                  {"bench", "compute.skin", "0"},
+                                  {"bench", "compute.backend", "cpu"}});
     const auto simulation = makeSimulation(scene);
     while (simulation->clock().time < 0.1) simulation->step(5);
     simulation->resetTimes();
@@ -101,12 +116,15 @@ void printPasses(int particles, double gflops, double gigabytes) {
         const double ms = t.ms / double(t.runs), n = simulation->fluidCount();
         const auto [flops, bytes] = work->second;
         if (flops > 0) {
-            const double pairs = std::string(t.name) == "density" ? seen.first : seen.later, reached = flops * pairs / ms * 1e-6;
-            fmt::print("| {:.0f}k {} | {:.2f} | {:.2f} | {:.0f} % | {:.0f} | {:.0f} % | | |\n", n / 1000, t.name, ms, pairs / ms * 1e-6, 100 * within / pairs,
-                       reached, 100 * reached / gflops);
+            const double pairs = std::string(t.name) == "density" ? seen.first : seen.later,
+                         reached = flops * pairs / ms * 1e-6;
+            fmt::print("| {:.0f}k {} | {:.2f} | {:.2f} | {:.0f} % | {:.0f} | {:.0f} % | | |\n",
+                       n / 1000, t.name, ms, pairs / ms * 1e-6, 100 * within / pairs, reached,
+                       100 * reached / gflops);
         } else {
             const double reached = bytes * n / ms * 1e-6;
-            fmt::print("| {:.0f}k {} | {:.2f} | | | | | {:.1f} | {:.0f} % |\n", n / 1000, t.name, ms, reached, 100 * reached / gigabytes);
+            fmt::print("| {:.0f}k {} | {:.2f} | | | | | {:.1f} | {:.0f} % |\n", n / 1000, t.name,
+                       ms, reached, 100 * reached / gigabytes);
         }
     }
 }
@@ -115,8 +133,13 @@ void printPasses(int particles, double gflops, double gigabytes) {
 
 int benchCeilings() {
     const double gflops = peakGflops(), gigabytes = copyRate();
-    fmt::print("{} threads: {:.0f} GFLOP/s of fused multiply-adds, {:.1f} GB/s copied (read and written)\n\n", cores(), gflops, gigabytes);
-    fmt::print("| pass | ms | pairs looked at, 1e9/s | of them within R | GFLOP/s | of the peak | GB/s | of the copy |\n|---|---|---|---|---|---|---|---|\n");
+    fmt::print(
+        "{} threads: {:.0f} GFLOP/s of fused multiply-adds, {:.1f} GB/s copied (read and "
+        "written)\n\n",
+        cores(), gflops, gigabytes);
+    fmt::print(
+        "| pass | ms | pairs looked at, 1e9/s | of them within R | GFLOP/s | of the peak | GB/s | "
+        "of the copy |\n|---|---|---|---|---|---|---|---|\n");
     for (int particles : {50'000, 500'000}) printPasses(particles, gflops, gigabytes);
     return int(Exit::Ok);
 }

@@ -45,7 +45,8 @@ constexpr Shortcut Shortcuts[] = {
     {"--hdf5", "output.hdf5", "FILE", "time series as HDF5"},
     {"--checkpoint", "output.checkpoint", "FILE", "writes a file from which the run can go on"},
     {"--backend", "compute.backend", "NAME", "auto, cpu or cuda"},
-    {"--threads", "compute.threads", "N", "CPU threads; without it all cores, or fewer while others use them"},
+    {"--threads", "compute.threads", "N",
+     "CPU threads; without it all cores, or fewer while others use them"},
     {"--device", "compute.device", "N", "number of the GPU; the one that draws without it"},
 };
 
@@ -120,7 +121,8 @@ int runScene(const RunOptions& options) {
 #ifdef SPINDRIFT_WINDOW
     if (!scene.output.headless) {
         const Output& output = scene.output;
-        for (const std::string& wanted : {output.screenshot, output.frames, output.csv, output.json, output.hdf5, output.particles, output.checkpoint})
+        for (const std::string& wanted : {output.screenshot, output.frames, output.csv, output.json,
+                                          output.hdf5, output.particles, output.checkpoint})
             if (!wanted.empty())
                 fmt::print(stderr, "spindrift: {}: not written by the window; add --headless\n",
                            wanted);
@@ -195,8 +197,9 @@ void addKnobOptions(CLI::App& command, std::vector<KnobChoice>& choices) {
 CLI::App* addRun(CLI::App& app, RunOptions& options) {
     CLI::App* command =
         app.add_subcommand("run", "runs a scene, in a window or without one; the default");
-    command->add_option("scene", options.scene,
-                        "scene file, the name of a shipped scene, or a checkpoint; a dam break without it");
+    command->add_option(
+        "scene", options.scene,
+        "scene file, the name of a shipped scene, or a checkpoint; a dam break without it");
     addKnobOptions(*command, options.choices);
     command->add_flag("--print-config", options.printConfig,
                       "writes the full effective scene and ends");
@@ -206,7 +209,8 @@ CLI::App* addRun(CLI::App& app, RunOptions& options) {
 
 CLI::App* addExplain(CLI::App& app, RunOptions& options) {
     CLI::App* command = app.add_subcommand(
-        "explain", "what a step of a scene does, skips and costs; with --steps also the time of each pass");
+        "explain",
+        "what a step of a scene does, skips and costs; with --steps also the time of each pass");
     command->add_option("scene", options.scene, "scene file, or the name of a shipped scene");
     addKnobOptions(*command, options.choices);
     return command;
@@ -244,46 +248,79 @@ int runBench(const BenchChoice& choice) {
 CLI::App* addBench(CLI::App& app, BenchChoice& choice) {
     BenchOptions& options = choice.steps;
     CLI::App* command = app.add_subcommand("bench", "times whole steps and their passes");
-    command->add_option("--only", options.only, "cases whose name contains this")->type_name("TEXT");
+    command->add_option("--only", options.only, "cases whose name contains this")
+        ->type_name("TEXT");
     command->add_option("--json", options.json, "writes the figures as JSON")->type_name("FILE");
-    command->add_option("--baseline", options.baseline, "says what is slower than in this file of an earlier run, and notes cases that it has not")
+    command
+        ->add_option("--baseline", options.baseline,
+                     "says what is slower than in this file of an earlier run, and notes cases "
+                     "that it has not")
         ->type_name("FILE");
     command->add_option("--threads", options.threads, "CPU threads; all cores without it")
-        ->type_name("N")->check(CLI::Range(1, 4096));
-    command->add_option("--simd", options.simd, "avx512, avx2 or sse; the best without it")->type_name("NAME");
-    command->add_flag("--gpu", options.gpu, "the GPU's cases instead: up to 100 million particles, frames, switching");
-    command->add_option("--most", options.most, "leaves out the GPU's cases with more particles")->type_name("N")
+        ->type_name("N")
+        ->check(CLI::Range(1, 4096));
+    command->add_option("--simd", options.simd, "avx512, avx2 or sse; the best without it")
+        ->type_name("NAME");
+    command->add_flag("--gpu", options.gpu,
+                      "the GPU's cases instead: up to 100 million particles, frames, switching");
+    command->add_option("--most", options.most, "leaves out the GPU's cases with more particles")
+        ->type_name("N")
         ->check(CLI::PositiveNumber);
-    command->add_flag("--error", choice.byError, "run time against error instead, of flows with known answers; half an hour");
-    command->add_flag("--local", choice.byLocalSteps, "local steps against the step of all instead; an hour");
-    command->add_flag("--frames", choice.byFrames, "pictures of up to 200 thousand particles instead, drawn off screen");
-    command->add_flag("--ceilings", choice.byCeilings, "what the passes make of the machine's arithmetic and memory instead; a minute");
-    command->add_option("--case", choice.error.cases, "with --error: only this flow; may be repeated")->type_name("NAME")
+    command->add_flag("--error", choice.byError,
+                      "run time against error instead, of flows with known answers; half an hour");
+    command->add_flag("--local", choice.byLocalSteps,
+                      "local steps against the step of all instead; an hour");
+    command->add_flag("--frames", choice.byFrames,
+                      "pictures of up to 200 thousand particles instead, drawn off screen");
+    command->add_flag(
+        "--ceilings", choice.byCeilings,
+        "what the passes make of the machine's arithmetic and memory instead; a minute");
+    command
+        ->add_option("--case", choice.error.cases, "with --error: only this flow; may be repeated")
+        ->type_name("NAME")
         ->allow_extra_args(false);
-    command->add_flag("--coarsest", choice.error.coarsest, "with --error: only the coarsest resolution, minutes");
-    command->add_option("--out", choice.error.out, "with --error and --local: folder for tables and charts")->type_name("FOLDER");
+    command->add_flag("--coarsest", choice.error.coarsest,
+                      "with --error: only the coarsest resolution, minutes");
+    command
+        ->add_option("--out", choice.error.out,
+                     "with --error and --local: folder for tables and charts")
+        ->type_name("FOLDER");
     return command;
 }
 
 CLI::App* addStress(CLI::App& app, StressOptions& options) {
-    CLI::App* command = app.add_subcommand("stress", "runs that are meant to break the physics; half a minute");
-    command->add_option("--only", options.only, "tortures whose name contains this, or random, or maps")->type_name("TEXT");
-    command->add_option("--random", options.random, "number of random scenes")->type_name("N")->check(CLI::Range(0, 1000000));
+    CLI::App* command =
+        app.add_subcommand("stress", "runs that are meant to break the physics; half a minute");
+    command
+        ->add_option("--only", options.only,
+                     "tortures whose name contains this, or random, or maps")
+        ->type_name("TEXT");
+    command->add_option("--random", options.random, "number of random scenes")
+        ->type_name("N")
+        ->check(CLI::Range(0, 1000000));
     command->add_option("--seed", options.seed, "of the first random scene")->type_name("N");
-    command->add_flag("--full", options.full, "also what takes many minutes, and maps of what is stable");
-    command->add_option("--out", options.out, "folder for stability.json and stability.md")->type_name("FOLDER");
+    command->add_flag("--full", options.full,
+                      "also what takes many minutes, and maps of what is stable");
+    command->add_option("--out", options.out, "folder for stability.json and stability.md")
+        ->type_name("FOLDER");
     return command;
 }
 
 CLI::App* addValidate(CLI::App& app, ValidateOptions& options) {
-    CLI::App* command =
-        app.add_subcommand("validate", "runs flows with known answers and says how wrong they are, and what that cost");
+    CLI::App* command = app.add_subcommand(
+        "validate",
+        "runs flows with known answers and says how wrong they are, and what that cost");
     command->add_option("cases", options.cases, "names of cases; all without them");
     command->add_flag("--list", options.list, "names the cases and ends");
     command->add_flag("--quick", options.quick, "coarse runs of some cases, half a minute");
-    command->add_option("--resolution", options.resolutions, "instead of the case's own; may be repeated")->type_name("N")
-        ->check(CLI::Range(4, 100000))->allow_extra_args(false);
-    command->add_option("--out", options.out, "folder for validation.json and a chart of each run")->type_name("FOLDER");
+    command
+        ->add_option("--resolution", options.resolutions,
+                     "instead of the case's own; may be repeated")
+        ->type_name("N")
+        ->check(CLI::Range(4, 100000))
+        ->allow_extra_args(false);
+    command->add_option("--out", options.out, "folder for validation.json and a chart of each run")
+        ->type_name("FOLDER");
     addSetOption(*command, options.choices);
     return command;
 }

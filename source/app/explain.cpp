@@ -11,7 +11,8 @@
 namespace spindrift {
 namespace {
 
-// Time of each pass, ms a run. A GPU measures the first step after a reset only, so each step is one.
+// Time of each pass, ms a run. A GPU measures the first step after a reset only, so each step is
+// one.
 std::map<std::string, double> timePasses(Simulation& simulation, int steps) {
     std::map<std::string, PassTime> sums;
     for (int k = 0; k < steps; ++k) {
@@ -33,20 +34,26 @@ template <class Enum> const char* nameOf(Enum value) { return enumNames(value)[s
 
 std::string particlesOf(const Simulation& s) {
     const std::string counts = fmt::format("{} fluid, {} boundary", s.fluidCount(), s.wallCount());
-    return s.objectParticleCount() > 0 ? fmt::format("{}, {} of objects", counts, s.objectParticleCount()) : counts;
+    return s.objectParticleCount() > 0
+               ? fmt::format("{}, {} of objects", counts, s.objectParticleCount())
+               : counts;
 }
 
 int explain(const Scene& scene) {
     const auto simulation = makeSimulation(scene);
-    const int64_t particles = int64_t(simulation->fluidCount()) + simulation->wallCount() + simulation->objectParticleCount();
+    const int64_t particles = int64_t(simulation->fluidCount()) + simulation->wallCount() +
+                              simulation->objectParticleCount();
     const double support = scene.simulation.support, mebibyte = 1 << 20;
     fmt::print("scene        {}\n", scene.name);
     fmt::print("device       {}\n", simulation->deviceName());
     fmt::print("particles    {}\n", particlesOf(*simulation));
     fmt::print("formulation  {}, {}, R = {:g} dx = {:.3g} m, about {:.0f} neighbours\n",
                nameOf(scene.simulation.formulation), nameOf(scene.simulation.kernel), support,
-               supportRadius(scene), scene.simulation.dimensions == 2 ? 3.14159 * support * support : 4.18879 * support * support * support);
-    fmt::print("memory       {:.1f} MiB, {:.0f} bytes a particle\n\n", double(simulation->bytes()) / mebibyte,
+               supportRadius(scene),
+               scene.simulation.dimensions == 2 ? 3.14159 * support * support
+                                                : 4.18879 * support * support * support);
+    fmt::print("memory       {:.1f} MiB, {:.0f} bytes a particle\n\n",
+               double(simulation->bytes()) / mebibyte,
                double(simulation->bytes()) / double(particles));
 
     const auto times = timePasses(*simulation, scene.compute.steps);
@@ -55,7 +62,8 @@ int explain(const Scene& scene) {
     for (const PlanRow& row : simulation->plan()) {
         if (!row.skipped.empty()) continue;
         const auto time = times.find(row.name);
-        fmt::print("  {:29}{:>5}\n", row.name, time == times.end() ? "" : fmt::format("{:.3f}", time->second));
+        fmt::print("  {:29}{:>5}\n", row.name,
+                   time == times.end() ? "" : fmt::format("{:.3f}", time->second));
         sum += time == times.end() ? 0 : time->second;
     }
     if (!times.empty()) fmt::print("  {:29}{:.3f}\n", "together", sum);

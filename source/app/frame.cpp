@@ -39,7 +39,8 @@ std::array<uint8_t, 3> shaded(std::array<uint8_t, 3> color, int turn) {
 }  // namespace
 
 Scene onDrawingDevice(Scene scene) {
-    if (scene.compute.device < 0 && scene.compute.backend != Backend::Cpu) scene.compute.device = drawingDevice();
+    if (scene.compute.device < 0 && scene.compute.backend != Backend::Cpu)
+        scene.compute.device = drawingDevice();
     return scene;
 }
 

@@ -55,7 +55,8 @@ private:
     bool copied_ = false;
 };
 
-// The scene on the GPU that draws, unless it names one: then a kernel writes what GL shows. Needs a current GL context.
+// The scene on the GPU that draws, unless it names one: then a kernel writes what GL shows. Needs a
+// current GL context.
 Scene onDrawingDevice(Scene);
 
 // The scene's camera for a picture of this shape, relative to the domain's lower corner.

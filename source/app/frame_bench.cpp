@@ -22,7 +22,9 @@ double medianMs(int repeats, const std::function<void()>& f) {
     for (int k = 0; k < repeats; ++k) {
         const auto start = std::chrono::steady_clock::now();
         f();
-        ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+        ms.push_back(
+            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+                .count());
     }
     std::nth_element(ms.begin(), ms.begin() + repeats / 2, ms.end());
     return ms[size_t(repeats) / 2];
@@ -35,12 +37,13 @@ nlohmann::json benchFrameAndSwitch(const Scene& wanted) {
     const Scene scene = onDrawingDevice(wanted);
     auto simulation = makeSimulation(scene);
     Frame frame(1280, 800, 1);
-    frame.update(*simulation, scene);   // registers the buffer
+    frame.update(*simulation, scene);  // registers the buffer
     simulation->step(10);
     simulation->wait();
     const double write = medianMs(100, [&] { frame.update(*simulation, scene); });
     const char* way = frame.copiesVertices() ? "copied through the host" : "written in place";
-    fmt::print("{:70} {:9} {:18.3f} ms, {}\n", "a frame's vertices: map, write, unmap", simulation->fluidCount(), write, way);
+    fmt::print("{:70} {:9} {:18.3f} ms, {}\n", "a frame's vertices: map, write, unmap",
+               simulation->fluidCount(), write, way);
 
     Scene other = scene;
     const double there = medianMs(1, [&] {
@@ -52,16 +55,23 @@ nlohmann::json benchFrameAndSwitch(const Scene& wanted) {
         simulation = makeSimulation(other, simulation->state());
         simulation->wait();
     });
-    fmt::print("{:70} {:9} {:18.1f} ms to the CPU, {:.1f} ms back\n", "change of backend", simulation->fluidCount(), there, back);
-    return {{"particles", simulation->fluidCount()}, {"frame_ms", write}, {"vertices", way},
-            {"switch_to_cpu_ms", there}, {"switch_back_ms", back}};
+    fmt::print("{:70} {:9} {:18.1f} ms to the CPU, {:.1f} ms back\n", "change of backend",
+               simulation->fluidCount(), there, back);
+    return {{"particles", simulation->fluidCount()},
+            {"frame_ms", write},
+            {"vertices", way},
+            {"switch_to_cpu_ms", there},
+            {"switch_back_ms", back}};
 }
 
 int benchFrames() {
-    fmt::print("| particles | samples | vertices, ms | draw, ms | read back, ms |\n|---|---|---|---|---|\n");
+    fmt::print(
+        "| particles | samples | vertices, ms | draw, ms | read back, ms "
+        "|\n|---|---|---|---|---|\n");
     EglContext context(-1);
     for (const char* spacing : {"0.02", "0.0143", "0.009"}) {
-        const Scene scene = chooseScene("dam_break", {{"bench", "simulation.spacing", spacing}, {"bench", "compute.backend", "cpu"}});
+        const Scene scene = chooseScene("dam_break", {{"bench", "simulation.spacing", spacing},
+                                                      {"bench", "compute.backend", "cpu"}});
         const auto simulation = makeSimulation(scene);
         while (simulation->clock().time < 0.1) simulation->step();
         for (int samples : {1, 4}) {
@@ -69,7 +79,8 @@ int benchFrames() {
             const double vertices = medianMs(20, [&] { frame.update(*simulation, scene); });
             const double drawn = medianMs(20, [&] { frame.draw(scene), glFinish(); });
             const double read = medianMs(20, [&] { frame.image(); });
-            fmt::print("| {} | {} | {:.2f} | {:.1f} | {:.1f} |\n", simulation->fluidCount(), samples, vertices, drawn, read);
+            fmt::print("| {} | {} | {:.2f} | {:.1f} | {:.1f} |\n", simulation->fluidCount(),
+                       samples, vertices, drawn, read);
             std::fflush(stdout);
         }
     }

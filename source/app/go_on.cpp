@@ -24,7 +24,10 @@ std::map<std::string, std::string> builtFrom(const Scene& scene) {
     return values;
 }
 
-struct NamedOutput { const char* option; std::string Output::*path; };
+struct NamedOutput {
+    const char* option;
+    std::string Output::*path;
+};
 constexpr NamedOutput Outputs[] = {{"--csv ", &Output::csv},
                                    {"--json ", &Output::json},
                                    {"--hdf5 ", &Output::hdf5},
@@ -38,7 +41,8 @@ std::string leaveOutputs(Output& output) {
     std::string left;
     for (const NamedOutput& named : Outputs) {
         std::string& path = output.*named.path;
-        if (!path.empty()) left += fmt::format("{}{}{}", left.empty() ? "" : " ", named.option, path);
+        if (!path.empty())
+            left += fmt::format("{}{}{}", left.empty() ? "" : " ", named.option, path);
         path.clear();
     }
     output.headless = false;
@@ -46,22 +50,28 @@ std::string leaveOutputs(Output& output) {
 }
 
 bool names(const std::vector<KnobChoice>& choices, const char* path) {
-    return std::any_of(choices.begin(), choices.end(), [&](const KnobChoice& c) { return c.path == path; });
+    return std::any_of(choices.begin(), choices.end(),
+                       [&](const KnobChoice& c) { return c.path == path; });
 }
 
 // A run in time ends with the step that reaches its end.
-bool isBehind(double end, const StepState& clock) { return end > 0 && end < (clock.time - clock.dt) * (1 - 1e-9); }
+bool isBehind(double end, const StepState& clock) {
+    return end > 0 && end < (clock.time - clock.dt) * (1 - 1e-9);
+}
 
 // One end is enough: the one that was named.
-void chooseEnd(Scene& scene, const std::vector<KnobChoice>& choices, const StepState& clock, const std::string& file) {
+void chooseEnd(Scene& scene, const std::vector<KnobChoice>& choices, const StepState& clock,
+               const std::string& file) {
     const bool bySteps = names(choices, "compute.steps"), byTime = names(choices, "output.time");
     if (bySteps && !byTime) scene.output.time = 0;
     if (byTime && !bySteps) scene.compute.steps = 0;
     if (scene.compute.steps > 0 && scene.compute.steps < clock.steps)
-        throw Error(Exit::Usage, fmt::format("--steps {}: {} goes on from step {}; name a later one, they count from the beginning of the run",
+        throw Error(Exit::Usage, fmt::format("--steps {}: {} goes on from step {}; name a later "
+                                             "one, they count from the beginning of the run",
                                              scene.compute.steps, file, clock.steps));
     if (isBehind(scene.output.time, clock))
-        throw Error(Exit::Usage, fmt::format("--time {}: {} goes on from {:.6g} s; name a later one, it counts from the beginning of the run",
+        throw Error(Exit::Usage, fmt::format("--time {}: {} goes on from {:.6g} s; name a later "
+                                             "one, it counts from the beginning of the run",
                                              scene.output.time, file, clock.time));
 }
 
@@ -79,7 +89,8 @@ std::vector<CurvePoint> curvesOf(const SeriesTable& series, int dimensions) {
     return curves;
 }
 
-// Of the first series that the run wrote and that is still there, by its name or beside the checkpoint.
+// Of the first series that the run wrote and that is still there, by its name or beside the
+// checkpoint.
 std::vector<CurvePoint> curvesOf(const Scene& scene, const StepState& clock,
                                  const std::filesystem::path& folder) {
     Measurement now;
@@ -92,7 +103,7 @@ std::vector<CurvePoint> curvesOf(const Scene& scene, const StepState& clock,
             try {
                 return curvesOf(rowsBefore(now, readSeries(path.string())),
                                 scene.simulation.dimensions);
-            } catch (const Error&) {}   // it is another run's
+            } catch (const Error&) {}  // it is another run's
         }
     return {};
 }
@@ -111,10 +122,12 @@ Start goOn(const std::string& file, const std::vector<KnobChoice>& choices) {
     applyChoices(scene, choices);
     for (const auto& [path, value] : builtFrom(scene))
         if (const auto old = before.find(path); old == before.end() || old->second != value)
-            throw Error(Exit::Usage, path + ": can't be changed in a run that has begun; start the scene again");
+            throw Error(Exit::Usage,
+                        path + ": can't be changed in a run that has begun; start the scene again");
     checkScene(scene, file, countOf(state.particles));
     chooseEnd(scene, choices, state.clock, file);
-    std::string said = fmt::format("{}: goes on from step {} ({:.6g} s)", file, state.clock.steps, state.clock.time);
+    std::string said = fmt::format("{}: goes on from step {} ({:.6g} s)", file, state.clock.steps,
+                                   state.clock.time);
     if (!left.empty()) said += "; only what is named again is written, before it was " + left;
     return {std::move(scene), std::move(state), file, view, window, std::move(curves), said};
 }

@@ -38,7 +38,7 @@ volatile std::sig_atomic_t stopSignal = 0;
 struct StopSignals {
     StopSignals() {
         stopSignal = 0;
-        struct sigaction action{};
+        struct sigaction action {};
         action.sa_handler = [](int signal) { stopSignal = signal; };
         action.sa_flags = int(SA_RESETHAND);
         sigaction(SIGINT, &action, &before_[0]);
@@ -63,13 +63,15 @@ struct OutputFormat {
 };
 const std::vector<OutputFormat>& outputFormats() {
     static const std::vector<OutputFormat> all = {
-        {&Output::screenshot, {"png"}}, {&Output::csv, {"csv"}}, {&Output::json, {"json"}}, {&Output::hdf5, {"h5", "hdf5", "hdf"}},
+        {&Output::screenshot, {"png"}},      {&Output::csv, {"csv"}},
+        {&Output::json, {"json"}},           {&Output::hdf5, {"h5", "hdf5", "hdf"}},
         {&Output::particles, {"csv", "h5"}}, {&Output::checkpoint, {"h5", "hdf5", "hdf"}}};
     return all;
 }
 
 // Every output is tried before the first step: an hour of computing must not end at a missing
-// folder. The file that the run is read from is no place for them, but a checkpoint that is named again.
+// folder. The file that the run is read from is no place for them, but a checkpoint that is named
+// again.
 void requireOutputs(const Output& output, const Start& start) {
     const std::string source = whereItLeads(start.file);
     std::set<std::string> places;
@@ -81,10 +83,13 @@ void requireOutputs(const Output& output, const Start& start) {
         const std::string place = whereItLeads(file);
         if (place.empty()) continue;
         if (place == source && !(start.state && format.file == &Output::checkpoint))
-            throw Error(Exit::Output, file + ": can't be written: the run is read from it; name another file");
+            throw Error(Exit::Output,
+                        file + ": can't be written: the run is read from it; name another file");
         if (!places.insert(place).second)
-            throw Error(Exit::Output, isStandardOutput(file) ? "two outputs both want standard output; give one of them a file"
-                                                             : file + ": two outputs want this file; give each a file of its own");
+            throw Error(Exit::Output,
+                        isStandardOutput(file)
+                            ? "two outputs both want standard output; give one of them a file"
+                            : file + ": two outputs want this file; give each a file of its own");
     }
     if (!output.frames.empty()) requireFolder(output.frames);
 }
@@ -94,7 +99,8 @@ struct Pictures {
     EglContext context;
     Frame frame;
     explicit Pictures(const Scene& scene)
-        : context(scene.compute.device), frame(scene.window.width, scene.window.height, scene.window.samples) {}
+        : context(scene.compute.device),
+          frame(scene.window.width, scene.window.height, scene.window.samples) {}
     void save(Simulation& simulation, const Scene& scene, const std::string& file) {
         frame.update(simulation, scene);
         frame.draw(scene);
@@ -102,13 +108,19 @@ struct Pictures {
     }
 };
 
-// A knob's decimal number, which its float is but near to: a run of 0.1 s and a frame at 0.1 s end together.
+// A knob's decimal number, which its float is but near to: a run of 0.1 s and a frame at 0.1 s end
+// together.
 double asWritten(float value) { return std::stod(fmt::format("{}", value)); }
 
 class HeadlessRun {
 public:
     HeadlessRun(const Start& start, bool quiet)
-        : scene_(start.scene), view_(start.view), window_(start.window), quiet_(quiet), progress_(!quiet), probes_(start.scene),
+        : scene_(start.scene),
+          view_(start.view),
+          window_(start.window),
+          quiet_(quiet),
+          progress_(!quiet),
+          probes_(start.scene),
           validity_(start.scene) {
         if (isInvalid()) throw Error(Exit::Invalid, refusal());
         requireOutputs(scene_.output, start);
@@ -122,12 +134,15 @@ public:
             poured_ = pouredIntoMeshes(scene_, simulation_->particles());
         guard_.emplace(*simulation_, scene_);
         now_ = simulation_->measure();
-        series_.emplace(output, probes_.columns(), simulation_->plan(), start.state ? &now_ : nullptr);
+        series_.emplace(output, probes_.columns(), simulation_->plan(),
+                        start.state ? &now_ : nullptr);
         first_ = steps_ = now_.steps, evaluationsBefore_ = now_.evaluations;
-        endStep_ = scene_.compute.steps == 0 && output.time == 0 ? first_ + DefaultSteps : scene_.compute.steps;
+        endStep_ = scene_.compute.steps == 0 && output.time == 0 ? first_ + DefaultSteps
+                                                                 : scene_.compute.steps;
         addRecorders();
         if (!quiet && !start.said.empty()) fmt::print(stderr, "spindrift: {}\n", start.said);
-        if (const std::string hidden = probes_.hiddenBySolids(scene_, *simulation_); !hidden.empty())
+        if (const std::string hidden = probes_.hiddenBySolids(scene_, *simulation_);
+            !hidden.empty())
             fmt::print(stderr, "spindrift: {}\n", hidden);
     }
 
@@ -138,12 +153,12 @@ public:
             while (!done() && trouble_.empty() && !isInvalid() && stopSignal == 0) advance();
             progress_.clear();
             finish();
-        } catch (...) {   // a GPU was lost, a disk is full: what was measured until then is kept
+        } catch (...) {  // a GPU was lost, a disk is full: what was measured until then is kept
             progress_.clear();
             try {
                 series_->finish();
                 keepLastGood();
-            } catch (const Error&) {}   // the first trouble is the one to tell
+            } catch (const Error&) {}  // the first trouble is the one to tell
             throw;
         }
         if (trouble_.empty() && stopSignal != 0) {
@@ -162,11 +177,14 @@ public:
 private:
     bool done() const {
         const double time = asWritten(scene_.output.time);
-        constexpr double NoStep = 1e-3;   // share of the last one: too short to be worth one, after a start near the end
-        return (endStep_ > 0 && steps_ >= endStep_) || (time > 0 && (isReached(time, now_.time) || time - now_.time < NoStep * now_.dt));
+        constexpr double NoStep =
+            1e-3;  // share of the last one: too short to be worth one, after a start near the end
+        return (endStep_ > 0 && steps_ >= endStep_) ||
+               (time > 0 && (isReached(time, now_.time) || time - now_.time < NoStep * now_.dt));
     }
 
-    // One step; then what is due: a look at the run's health, what is to be recorded, the progress bar.
+    // One step; then what is due: a look at the run's health, what is to be recorded, the progress
+    // bar.
     void advance() {
         const double stop = nextStop();
         simulation_->stopAt(stop);
@@ -187,7 +205,8 @@ private:
         series_->keepUp();
     }
 
-    // Trouble that shorter steps can't help ends the run; what was written since the state that it goes back to is forgotten.
+    // Trouble that shorter steps can't help ends the run; what was written since the state that it
+    // goes back to is forgotten.
     void lookAfterIt() {
         const HealthGuard::Finding found = guard_->look(now_);
         if (found == HealthGuard::Finding::GaveUp) {
@@ -210,7 +229,8 @@ private:
     bool isInvalid() const { return scene_.output.strict && !validity_.remarks().empty(); }
     std::string refusal() const {
         const size_t more = validity_.remarks().size() - 1;
-        return fmt::format("outside its validity (output.strict): {}{}", validity_.remarks()[0].text,
+        return fmt::format("outside its validity (output.strict): {}{}",
+                           validity_.remarks()[0].text,
                            more > 0 ? fmt::format("; and {} more", more) : "");
     }
 
@@ -236,26 +256,37 @@ private:
         const Output& output = scene_.output;
         return !output.csv.empty() || !output.json.empty() || !output.hdf5.empty();
     }
-    // A row, a frame and a checkpoint of the same moment are written in this order. A run that goes on writes first what comes after
-    // the last that is there.
+    // A row, a frame and a checkpoint of the same moment are written in this order. A run that goes
+    // on writes first what comes after the last that is there.
     void addRecorders() {
         const Output& output = scene_.output;
-        const double frame = 1 / double(output.fps), row = output.sampleEvery > 0 ? asWritten(output.sampleEvery) : frame;
-        const auto after = [](double last, double every) { return last < 0 ? 0 : multipleAfter(last, every); };
+        const double frame = 1 / double(output.fps),
+                     row = output.sampleEvery > 0 ? asWritten(output.sampleEvery) : frame;
+        const auto after = [](double last, double every) {
+            return last < 0 ? 0 : multipleAfter(last, every);
+        };
         if (hasRows())
-            recorders_.push_back({row, after(series_->lastTime(), row), [this] { addRow(); }, [this](double time) { series_->dropAfter(time); }});
+            recorders_.push_back({row, after(series_->lastTime(), row), [this] { addRow(); },
+                                  [this](double time) { series_->dropAfter(time); }});
         if (!output.frames.empty()) {
             if (first_ > 0) countFramesBefore(frame);
-            recorders_.push_back({frame, after(frameTimes_.empty() ? -1 : frameTimes_.back(), frame), [this] { saveFrame(); },
-                                  [this](double time) { std::erase_if(frameTimes_, [&](double drawn) { return drawn > time; }); }});
+            recorders_.push_back(
+                {frame, after(frameTimes_.empty() ? -1 : frameTimes_.back(), frame),
+                 [this] { saveFrame(); },
+                 [this](double time) {
+                     std::erase_if(frameTimes_, [&](double drawn) { return drawn > time; });
+                 }});
         }
         const double checkpoint = asWritten(output.checkpointEvery);
         if (!output.checkpoint.empty() && checkpoint > 0)
-            recorders_.push_back({checkpoint, after(now_.time, checkpoint), [this] { saveCheckpoint(); }, [](double) {}});
+            recorders_.push_back({checkpoint, after(now_.time, checkpoint),
+                                  [this] { saveCheckpoint(); }, [](double) {}});
     }
 
     std::string frameFile(size_t number) const {
-        return (std::filesystem::path(scene_.output.frames) / fmt::format("frame_{:05}.png", number)).string();
+        return (std::filesystem::path(scene_.output.frames) /
+                fmt::format("frame_{:05}.png", number))
+            .string();
     }
     void saveFrame() {
         pictures_->save(*simulation_, scene_, frameFile(frameTimes_.size()));
@@ -264,7 +295,8 @@ private:
     }
     // Those of the run that goes on, as far as they are there.
     void countFramesBefore(double every) {
-        while (isReached(double(frameTimes_.size()) * every, now_.time) && std::filesystem::exists(frameFile(frameTimes_.size())))
+        while (isReached(double(frameTimes_.size()) * every, now_.time) &&
+               std::filesystem::exists(frameFile(frameTimes_.size())))
             frameTimes_.push_back(double(frameTimes_.size()) * every);
     }
 
@@ -283,9 +315,11 @@ private:
         written_ = state.clock.time;
     }
     void keepLastGood() {
-        if (!scene_.output.checkpoint.empty() && guard_->lastGood().clock.time > written_) writeCheckpointOf(guard_->lastGood());
+        if (!scene_.output.checkpoint.empty() && guard_->lastGood().clock.time > written_)
+            writeCheckpointOf(guard_->lastGood());
     }
-    // The run goes on from what the file holds, so that whoever restarts from it gets the same bits.
+    // The run goes on from what the file holds, so that whoever restarts from it gets the same
+    // bits.
     void saveCheckpoint() {
         RunState state = simulation_->state();
         writeCheckpointOf(state);
@@ -294,7 +328,9 @@ private:
     }
 
     void addRow() {
-        series_->add(now_, simulation_->times(), probes_.any() ? probes_.read(simulation_->particles()) : std::vector<double>());
+        series_->add(
+            now_, simulation_->times(),
+            probes_.any() ? probes_.read(simulation_->particles()) : std::vector<double>());
         simulation_->resetTimes();
     }
 
@@ -313,7 +349,8 @@ private:
             saveParticles(output.particles, simulation_->particles(),
                           massesToSave(scene_, *simulation_));
         if (!output.screenshot.empty()) pictures_->save(*simulation_, scene_, output.screenshot);
-        if (!quiet_) summarise();
+        if (!quiet_)
+            summarise();
         else if (!isInvalid())
             for (const Remark& r : validity_.remarks())
                 fmt::print(stderr, "spindrift: {}\n", r.text);
@@ -323,7 +360,9 @@ private:
         const Output& output = scene_.output;
         // Standard output may already belong to an output.
         const auto& formats = outputFormats();
-        const bool taken = std::any_of(formats.begin(), formats.end(), [&](const auto& f) { return isStandardOutput(output.*f.file); });
+        const bool taken = std::any_of(formats.begin(), formats.end(), [&](const auto& f) {
+            return isStandardOutput(output.*f.file);
+        });
         std::FILE* out = taken ? stderr : stdout;
         const double ms = made_ > 0 ? 1000 * stepSeconds_ / double(made_) : 0;
         fmt::print(out, "scene          {}\n", scene_.name);
@@ -332,33 +371,39 @@ private:
             fmt::print(out, "vertices       copied through the host, because {} draws\n", glName());
         fmt::print(out, "particles      {}\n", particlesOf(*simulation_));
         for (const Poured& p : poured_)
-            fmt::print(out, "poured         {:.4g} kg into fluid.bodies[{}], {:.4g} kg by its volume\n",
+            fmt::print(out,
+                       "poured         {:.4g} kg into fluid.bodies[{}], {:.4g} kg by its volume\n",
                        p.mass, p.body, p.wanted);
         for (const std::string& body : pouredAmiss(scene_, *simulation_))
             fmt::print(out, "poured         {}\n", body);
         fmt::print(out, "steps          {}, {:.3g} ms each\n", steps_ - first_, ms);
         if (scene_.time.mode == TimeMode::Local && made_ > 0)
             fmt::print(out, "local steps    {:.3g} evaluations of a particle a step\n",
-                       (now_.evaluations - evaluationsBefore_) / double(simulation_->fluidCount()) / double(made_));
+                       (now_.evaluations - evaluationsBefore_) / double(simulation_->fluidCount()) /
+                           double(made_));
         fmt::print(out, "simulated      {:.4g} s, last step {:.3g} s\n", now_.time, now_.dt);
         const std::string joule = perDepth("J", now_.dimensions);
-        fmt::print(out, "energy         {:.4g} {} kinetic, {:.4g} {} potential\n", now_.kineticEnergy,
-                   joule, now_.potentialEnergy, joule);
+        fmt::print(out, "energy         {:.4g} {} kinetic, {:.4g} {} potential\n",
+                   now_.kineticEnergy, joule, now_.potentialEnergy, joule);
         fmt::print(out, "density error  {:.3g} % mean, {:.3g} % largest\n", 100 * now_.densityError,
                    100 * now_.maxDensityError);
         for (const Remark& r : validity_.remarks()) fmt::print(out, "not valid      {}\n", r.text);
-        if (guard_->retries() > 0) fmt::print(out, "went back      {} times, on with shorter steps\n", guard_->retries());
+        if (guard_->retries() > 0)
+            fmt::print(out, "went back      {} times, on with shorter steps\n", guard_->retries());
         if (!output.checkpoint.empty())
-            fmt::print(out, "checkpoint     {}{}\n", output.checkpoint, trouble_.empty() ? "" : ", from before the trouble");
-        if (!output.particles.empty() && trouble_.empty()) fmt::print(out, "particles in   {}\n", output.particles);
+            fmt::print(out, "checkpoint     {}{}\n", output.checkpoint,
+                       trouble_.empty() ? "" : ", from before the trouble");
+        if (!output.particles.empty() && trouble_.empty())
+            fmt::print(out, "particles in   {}\n", output.particles);
         if (!output.screenshot.empty())
             fmt::print(out, "picture        {}\n",
                        std::filesystem::absolute(output.screenshot).lexically_normal().string());
-        if (framesMade_ > 0) fmt::print(out, "frames         {} in {}\n", framesMade_, output.frames);
+        if (framesMade_ > 0)
+            fmt::print(out, "frames         {} in {}\n", framesMade_, output.frames);
     }
 
     Scene scene_;
-    View view_;   // of the scene's file: what a checkpoint holds
+    View view_;  // of the scene's file: what a checkpoint holds
     Window window_;
     bool quiet_;
     Progress progress_;
@@ -370,16 +415,17 @@ private:
     std::optional<HealthGuard> guard_;
     std::optional<SeriesFiles> series_;
     std::vector<Recorder> recorders_;
-    std::vector<Poured> poured_;   // at the start
+    std::vector<Poured> poured_;  // at the start
     Measurement now_;
     std::string trouble_;  // why the run stopped early
-    int64_t first_ = 0, steps_ = 0, endStep_ = 0;   // of the whole run: before this part of it, until now, at its end or 0
-    int64_t made_ = 0;                              // here, with those that were made in vain
-    std::vector<double> frameTimes_;                // s, of the frames written
-    size_t framesMade_ = 0;                         // here, with those that were drawn twice
-    double written_ = -1;                           // s simulated, of the checkpoint
-    double evaluationsBefore_ = 0;                  // this run
-    double stepSeconds_ = 0;                      // of wall time
+    int64_t first_ = 0, steps_ = 0,
+            endStep_ = 0;  // of the whole run: before this part of it, until now, at its end or 0
+    int64_t made_ = 0;     // here, with those that were made in vain
+    std::vector<double> frameTimes_;  // s, of the frames written
+    size_t framesMade_ = 0;           // here, with those that were drawn twice
+    double written_ = -1;             // s simulated, of the checkpoint
+    double evaluationsBefore_ = 0;    // this run
+    double stepSeconds_ = 0;          // of wall time
     StopSignals signals_;
 };
 

@@ -10,13 +10,15 @@ namespace spindrift {
 inline bool isReached(double time, double now) { return now >= time * (1 - 1e-9); }
 
 // Among the multiples of `every` the first one that is still ahead.
-inline double multipleAfter(double time, double every) { return (std::floor(time / every * (1 + 1e-9)) + 1) * every; }
+inline double multipleAfter(double time, double every) {
+    return (std::floor(time / every * (1 + 1e-9)) + 1) * every;
+}
 
 // Writes at the multiples of an interval of simulated time, s.
 struct Recorder {
     double every, next;
     std::function<void()> write;
-    std::function<void(double time)> rewind;   // forgets what was written after this time
+    std::function<void(double time)> rewind;  // forgets what was written after this time
 
     void writeIfDue(double now) {
         if (!isReached(next, now)) return;

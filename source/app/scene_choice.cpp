@@ -71,7 +71,8 @@ namespace {
 // The scene as its file says it, and that file.
 std::pair<Scene, std::string> sceneOf(const std::string& name) {
     const std::string file = findScene(name.empty() ? "dam_break" : name);
-    if (isCheckpoint(file)) throw Error(Exit::Scene, file + ": is a checkpoint; here a scene is wanted");
+    if (isCheckpoint(file))
+        throw Error(Exit::Scene, file + ": is a checkpoint; here a scene is wanted");
     return {loadScene(file), file};
 }
 
@@ -84,7 +85,8 @@ Scene chooseScene(const std::string& name, const std::vector<KnobChoice>& choice
     return scene;
 }
 
-std::unique_ptr<Simulation> startSimulation(const Scene& scene, const std::optional<RunState>& state) {
+std::unique_ptr<Simulation> startSimulation(const Scene& scene,
+                                            const std::optional<RunState>& state) {
     return state ? makeSimulation(scene, *state) : makeSimulation(scene);
 }
 

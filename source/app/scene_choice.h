@@ -31,11 +31,12 @@ struct KnobChoice {
 struct Start {
     Scene scene;
     std::optional<RunState> state;
-    std::string file = {};   // that both were read from
-    View view = {};          // the scene's own looks, without the choices, which are for one run only: those of its checkpoints
+    std::string file = {};  // that both were read from
+    View view = {};  // the scene's own looks, without the choices, which are for one run only:
+                     // those of its checkpoints
     Window window = {};
-    std::vector<CurvePoint> before = {};   // what curves show of the run until then
-    std::string said = {};   // of a run that goes on: one line about what it does and doesn't
+    std::vector<CurvePoint> before = {};  // what curves show of the run until then
+    std::string said = {};  // of a run that goes on: one line about what it does and doesn't
 };
 // Sets the knobs, in order. Throws Error (Usage).
 void applyChoices(Scene&, const std::vector<KnobChoice>&);

@@ -16,7 +16,8 @@
 
 namespace spindrift {
 
-std::vector<ValidationCase> chooseCases(const std::vector<ValidationCase>& all, const std::vector<std::string>& names) {
+std::vector<ValidationCase> chooseCases(const std::vector<ValidationCase>& all,
+                                        const std::vector<std::string>& names) {
     if (names.empty()) return all;
     std::vector<std::string> known;
     for (const ValidationCase& c : all) known.push_back(c.name);
@@ -25,8 +26,11 @@ std::vector<ValidationCase> chooseCases(const std::vector<ValidationCase>& all, 
         const auto found = std::find(known.begin(), known.end(), name);
         if (found == known.end()) {
             const std::string nearest = nearestName(name, known);
-            throw Error(Exit::Usage, fmt::format("{}: no such case; {}cases: {}", name,
-                                                 nearest.empty() ? "" : fmt::format("did you mean {}? ", nearest), listed(known)));
+            throw Error(
+                Exit::Usage,
+                fmt::format("{}: no such case; {}cases: {}", name,
+                            nearest.empty() ? "" : fmt::format("did you mean {}? ", nearest),
+                            listed(known)));
         }
         chosen.push_back(all[size_t(found - known.begin())]);
     }
@@ -46,17 +50,19 @@ Scene sceneFor(const ValidationCase& c, int resolution, const ValidateOptions& o
 // Between two runs of one case, of its first metric; NaN without a run before.
 double order(const ValidationRun* before, const ValidationRun& run) {
     if (!before || before->metrics.empty()) return std::numeric_limits<double>::quiet_NaN();
-    return std::log(std::abs(before->metrics[0].value / run.metrics[0].value)) / std::log(double(run.resolution) / before->resolution);
+    return std::log(std::abs(before->metrics[0].value / run.metrics[0].value)) /
+           std::log(double(run.resolution) / before->resolution);
 }
 
 void print(const ValidationCase& c, const ValidationRun& run, double order) {
-    fmt::print("\n{} = {}: {}, {} + {} particles, {} steps, {:.1f} s", c.length, run.resolution, run.method, run.cost.particles,
-               run.cost.walls, run.cost.steps, run.cost.seconds);
+    fmt::print("\n{} = {}: {}, {} + {} particles, {} steps, {:.1f} s", c.length, run.resolution,
+               run.method, run.cost.particles, run.cost.walls, run.cost.steps, run.cost.seconds);
     fmt::print("{}\n", std::isfinite(order) ? fmt::format(", order {:.2f}", order) : "");
     for (const Metric& m : run.metrics) {
         const bool missed = m.target && !(std::abs(m.value) <= *m.target);
-        fmt::print("  {:36} {:>11.4g} {:3}{}\n", m.name, m.value, m.unit,
-                   m.target ? fmt::format("  target {:g}{}", *m.target, missed ? "  MISSED" : "") : "");
+        fmt::print(
+            "  {:36} {:>11.4g} {:3}{}\n", m.name, m.value, m.unit,
+            m.target ? fmt::format("  target {:g}{}", *m.target, missed ? "  MISSED" : "") : "");
     }
     std::fflush(stdout);
 }
@@ -66,12 +72,14 @@ std::string tableRow(const ValidationCase& c, const ValidationRun& run, double o
     std::string metrics;
     for (const Metric& m : run.metrics) {
         const bool missed = m.target && !(std::abs(m.value) <= *m.target);
-        metrics += fmt::format("{}{}{} {:.3g}{}{}{}", metrics.empty() ? "" : "; ", missed ? "**" : "", m.name, m.value,
-                               m.unit.empty() ? "" : " " + m.unit, m.target ? fmt::format(" (target {:g})", *m.target) : "",
-                               missed ? " missed**" : "");
+        metrics += fmt::format(
+            "{}{}{} {:.3g}{}{}{}", metrics.empty() ? "" : "; ", missed ? "**" : "", m.name, m.value,
+            m.unit.empty() ? "" : " " + m.unit,
+            m.target ? fmt::format(" (target {:g})", *m.target) : "", missed ? " missed**" : "");
     }
-    return fmt::format("| {} | {} = {} | {} | {} | {:.1f} |\n", c.title, c.length, run.resolution, metrics,
-                       std::isfinite(order) ? fmt::format("{:.1f}", order) : "", run.cost.seconds);
+    return fmt::format("| {} | {} = {} | {} | {} | {:.1f} |\n", c.title, c.length, run.resolution,
+                       metrics, std::isfinite(order) ? fmt::format("{:.1f}", order) : "",
+                       run.cost.seconds);
 }
 
 nlohmann::json describe(const ValidationCase& c, const ValidationRun& run, double order) {
@@ -81,22 +89,34 @@ nlohmann::json describe(const ValidationCase& c, const ValidationRun& run, doubl
         if (m.target) row["target"] = *m.target, row["passed"] = std::abs(m.value) <= *m.target;
         metrics.push_back(row);
     }
-    return {{"case", c.name}, {"title", c.title}, {"reference", c.reference}, {"method", run.method}, {"resolution", run.resolution},
-            {"particles", run.cost.particles}, {"boundary", run.cost.walls}, {"steps", run.cost.steps},
-            {"seconds", run.cost.seconds}, {"megabytes", run.cost.megabytes}, {"order", order}, {"metrics", metrics}};
+    return {{"case", c.name},
+            {"title", c.title},
+            {"reference", c.reference},
+            {"method", run.method},
+            {"resolution", run.resolution},
+            {"particles", run.cost.particles},
+            {"boundary", run.cost.walls},
+            {"steps", run.cost.steps},
+            {"seconds", run.cost.seconds},
+            {"megabytes", run.cost.megabytes},
+            {"order", order},
+            {"metrics", metrics}};
 }
 
 }  // namespace
 
 int validate(const ValidateOptions& options) {
-    const std::vector<ValidationCase> cases = chooseCases(validationCases(configsFolder() + "/validation/data"), options.cases);
+    const std::vector<ValidationCase> cases =
+        chooseCases(validationCases(configsFolder() + "/validation/data"), options.cases);
     if (options.list) {
         for (const ValidationCase& c : cases) fmt::print("{:22} {}\n", c.name, c.title);
         return int(Exit::Ok);
     }
     if (!options.out.empty()) requireFolder(options.out);
     auto resolutionsOf = [&](const ValidationCase& c) {
-        return !options.resolutions.empty() ? options.resolutions : options.quick ? c.quick : c.resolutions;
+        return !options.resolutions.empty() ? options.resolutions
+               : options.quick              ? c.quick
+                                            : c.resolutions;
     };
     // An hour of computing must not end at a mistake.
     for (const ValidationCase& c : cases)
@@ -118,7 +138,8 @@ int validate(const ValidateOptions& options) {
             for (const Metric& m : run.metrics)
                 if (m.target) ++judged, passed += std::abs(m.value) <= *m.target;
             if (!options.out.empty()) {
-                writeText(fmt::format("{}/{}_{}.svg", options.out, c.name, resolution), svg(run.chart));
+                writeText(fmt::format("{}/{}_{}.svg", options.out, c.name, resolution),
+                          svg(run.chart));
                 writeText(options.out + "/validation.json", rows.dump(2) + "\n");
                 writeText(options.out + "/validation.md", markdown);
             }

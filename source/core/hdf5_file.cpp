@@ -9,8 +9,8 @@ namespace {
 // More rows than any run has: a damaged size must not ask for memory.
 constexpr hsize_t MostRows = 1'000'000'000;
 
-// HDF5 writes its errors to standard error by default, and tidies up when the program ends, where it was seen to crash after
-// reading a damaged file; all that is open here is closed here.
+// HDF5 writes its errors to standard error by default, and tidies up when the program ends, where
+// it was seen to crash after reading a damaged file; all that is open here is closed here.
 void prepareLibrary() {
     H5dont_atexit();
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
@@ -56,7 +56,8 @@ bool isFile(const std::string& path) {
 }
 
 // In chunks with checksums; HDF5 has no chunks of nothing.
-void writeArray(hid_t file, const std::string& name, hid_t stored, hid_t native, const void* data, const std::vector<hsize_t>& size) {
+void writeArray(hid_t file, const std::string& name, hid_t stored, hid_t native, const void* data,
+                const std::vector<hsize_t>& size) {
     std::vector<hsize_t> chunk = size;
     chunk[0] = std::min<hsize_t>(size[0], 1 << 16);
     Handle space(H5Screate_simple(int(size.size()), size.data(), nullptr), H5Sclose, name);
@@ -65,7 +66,8 @@ void writeArray(hid_t file, const std::string& name, hid_t stored, hid_t native,
         require(H5Pset_chunk(options, int(size.size()), chunk.data()), name);
         require(H5Pset_fletcher32(options), name);
     }
-    Handle set(H5Dcreate2(file, name.c_str(), stored, space, H5P_DEFAULT, options, H5P_DEFAULT), H5Dclose, name);
+    Handle set(H5Dcreate2(file, name.c_str(), stored, space, H5P_DEFAULT, options, H5P_DEFAULT),
+               H5Dclose, name);
     if (size[0] > 0) require(H5Dwrite(set, native, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), name);
 }
 
@@ -122,7 +124,8 @@ std::string readText(hid_t file, const std::string& name) {
     return readAttribute(file, name, name);
 }
 
-void writeNumbers(hid_t file, const std::string& name, const std::string& unit, const std::vector<double>& values) {
+void writeNumbers(hid_t file, const std::string& name, const std::string& unit,
+                  const std::vector<double>& values) {
     writeArray(file, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, values.data(), {values.size()});
     writeUnit(file, name, unit);
 }
@@ -138,7 +141,9 @@ Array::Array(hid_t file, const std::string& name, int rank)
 std::vector<double> readNumbers(hid_t file, const std::string& name) {
     const Array array(file, name, 1);
     std::vector<double> values(array.size[0]);
-    if (!values.empty()) require(H5Dread(array.set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), name);
+    if (!values.empty())
+        require(H5Dread(array.set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
+                name);
     return values;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
-// What all HDF5 files of the program share: handles that close themselves, arrays with checksums and units, no time of day.
+// What all HDF5 files of the program share: handles that close themselves, arrays with checksums
+// and units, no time of day.
 #include <hdf5.h>
 
 #include <functional>
@@ -9,8 +10,11 @@
 
 namespace spindrift::hdf5 {
 
-// What went wrong with HDF5, without the place: the public functions of a file's reader or writer add it.
-struct Trouble { std::string what; };
+// What went wrong with HDF5, without the place: the public functions of a file's reader or writer
+// add it.
+struct Trouble {
+    std::string what;
+};
 
 // Owns an HDF5 identifier.
 class Handle {
@@ -44,7 +48,8 @@ Handle openFile(const std::string& path);
 bool isFile(const std::string& path);
 
 // A dataset of this size, stored as one type from another in memory.
-void writeArray(hid_t file, const std::string& name, hid_t stored, hid_t native, const void* data, const std::vector<hsize_t>& size);
+void writeArray(hid_t file, const std::string& name, hid_t stored, hid_t native, const void* data,
+                const std::vector<hsize_t>& size);
 // Text as the attribute "unit" of a dataset; none when it is empty.
 void writeUnit(hid_t file, const std::string& name, const std::string& unit);
 // That text, of fixed or variable length; empty where there is none.
@@ -53,7 +58,8 @@ std::string readUnit(hid_t file, const std::string& name);
 void writeText(hid_t file, const std::string& name, const std::string& text);
 std::string readText(hid_t file, const std::string& name);
 // A dataset of one dimension, float64.
-void writeNumbers(hid_t file, const std::string& name, const std::string& unit, const std::vector<double>& values);
+void writeNumbers(hid_t file, const std::string& name, const std::string& unit,
+                  const std::vector<double>& values);
 
 // An opened dataset of `rank` dimensions and its size.
 struct Array {

@@ -44,7 +44,8 @@ template <class Pass> void runRange(const Pass& pass, int begin, int end) {
     for (int i = begin; i < end; ++i) pass(i);
 }
 // Adds reduction.addTo for every particle in [begin, end).
-template <class Reduction, class Value> void sumRange(const Reduction& reduction, int begin, int end, Value& sum) {
+template <class Reduction, class Value>
+void sumRange(const Reduction& reduction, int begin, int end, Value& sum) {
     for (int i = begin; i < end; ++i) reduction.addTo(sum, i);
 }
 

@@ -1,8 +1,9 @@
-// A SIMD register full of particles, through Google Highway: 16 floats with AVX-512, 8 with AVX2, 4 otherwise.
-// A neighbour pass works on pairs: a Group of width/4 particles i, each repeated over four lanes, against the
-// four particles of one neighbour cluster j, repeated for every i:
+// A SIMD register full of particles, through Google Highway: 16 floats with AVX-512, 8 with AVX2, 4
+// otherwise. A neighbour pass works on pairs: a Group of width/4 particles i, each repeated over
+// four lanes, against the four particles of one neighbour cluster j, repeated for every i:
 //     i: a a a a b b b b c c c c d d d d        j: p q r s p q r s p q r s p q r s
-// Two thirds fewer pairs miss than with 16 particles against one neighbour, because a cluster is compact.
+// Two thirds fewer pairs miss than with 16 particles against one neighbour, because a cluster is
+// compact.
 #pragma once
 
 #include <hwy/highway.h>
@@ -10,7 +11,8 @@
 #include <cmath>
 #include <cstddef>
 
-// HD: part of a pass, inlined into it. LANE_CALL: the same for lambdas. HD_OUT: also called from plain host code.
+// HD: part of a pass, inlined into it. LANE_CALL: the same for lambdas. HD_OUT: also called from
+// plain host code.
 #define HD __attribute__((always_inline))
 #define HD_OUT
 #define LANE_CALL HWY_ATTR __attribute__((always_inline))
@@ -27,9 +29,16 @@ using WideTag = hn::CappedTag<float, 16>;
 using QuadTag = hn::FixedTag<float, 4>;
 inline constexpr int width = int(hn::MaxLanes(WideTag()));
 
-struct Group { int first; static constexpr int size = width / 4; };
-struct Four { int first; };
-struct Quad { int first; };
+struct Group {
+    int first;
+    static constexpr int size = width / 4;
+};
+struct Four {
+    int first;
+};
+struct Quad {
+    int first;
+};
 HD inline int firstOf(int i) { return i; }
 template <class I> HD inline int firstOf(I i) { return i.first; }
 HD inline int origin(int) { return 0; }
@@ -37,7 +46,8 @@ template <class I> HD inline I origin(I) { return {0}; }
 
 template <class D> struct Pack {
     hn::Vec<D> v;
-    Pack() = default;   // implicit members are made outside of the instruction set: this one must do nothing
+    Pack() = default;  // implicit members are made outside of the instruction set: this one must do
+                       // nothing
     HD Pack(float s) : v(hn::Set(D(), s)) {}
     HD explicit Pack(hn::Vec<D> v_) : v(v_) {}
     HD friend Pack operator+(Pack a, Pack b) { return Pack(hn::Add(a.v, b.v)); }
@@ -47,7 +57,9 @@ template <class D> struct Pack {
     HD friend Pack operator-(Pack a) { return Pack(hn::Neg(a.v)); }
     HD Pack& operator+=(Pack b) { return *this = *this + b; }
     HD Pack& operator-=(Pack b) { return *this = *this - b; }
-    struct Mask { hn::Mask<D> m; };
+    struct Mask {
+        hn::Mask<D> m;
+    };
     HD friend Mask operator<(Pack a, Pack b) { return {hn::Lt(a.v, b.v)}; }
     HD friend Mask operator>(Pack a, Pack b) { return {hn::Gt(a.v, b.v)}; }
 };
@@ -58,16 +70,25 @@ template <> struct RealOf<Quad> { using type = Pack<QuadTag>; };
 template <> struct RealOf<int> { using type = float; };
 template <class I> using Real = typename RealOf<I>::type;
 
-template <class D> HD inline Pack<D> mulAdd(Pack<D> a, Pack<D> b, Pack<D> c) { return Pack<D>(hn::MulAdd(a.v, b.v, c.v)); }
-template <class D> HD inline Pack<D> negMulAdd(Pack<D> a, Pack<D> b, Pack<D> c) { return Pack<D>(hn::NegMulAdd(a.v, b.v, c.v)); }
-template <class D> HD inline Pack<D> min(Pack<D> a, Pack<D> b) { return Pack<D>(hn::Min(a.v, b.v)); }
-template <class D> HD inline Pack<D> max(Pack<D> a, Pack<D> b) { return Pack<D>(hn::Max(a.v, b.v)); }
+template <class D> HD inline Pack<D> mulAdd(Pack<D> a, Pack<D> b, Pack<D> c) {
+    return Pack<D>(hn::MulAdd(a.v, b.v, c.v));
+}
+template <class D> HD inline Pack<D> negMulAdd(Pack<D> a, Pack<D> b, Pack<D> c) {
+    return Pack<D>(hn::NegMulAdd(a.v, b.v, c.v));
+}
+template <class D> HD inline Pack<D> min(Pack<D> a, Pack<D> b) {
+    return Pack<D>(hn::Min(a.v, b.v));
+}
+template <class D> HD inline Pack<D> max(Pack<D> a, Pack<D> b) {
+    return Pack<D>(hn::Max(a.v, b.v));
+}
 template <class D> HD inline Pack<D> select(typename Pack<D>::Mask m, Pack<D> yes, Pack<D> no) {
     return Pack<D>(hn::IfThenElse(m.m, yes.v, no.v));
 }
 // Whether it holds in any lane.
 HD inline bool any(Wide::Mask m) { return !hn::AllFalse(WideTag(), m.m); }
-// Exact root and division keep the divider busy beside the multipliers: cheaper than estimates with Newton steps.
+// Exact root and division keep the divider busy beside the multipliers: cheaper than estimates with
+// Newton steps.
 template <class D> HD inline Pack<D> squareRoot(Pack<D> a) { return Pack<D>(hn::Sqrt(a.v)); }
 // An estimate and one Newton step: 23 bits.
 template <class D> HD inline Pack<D> reciprocal(Pack<D> a) {
@@ -92,7 +113,9 @@ template <bool takes, class D> HD inline void addToOthers(float* p, D d, hn::Vec
         hn::StoreU(takes ? hn::Sub(before, v) : hn::Add(before, v), d, p);
     }
 }
-template <bool takes> HD inline void addToOthers(float* p, Wide a) { addToOthers<takes>(p, WideTag(), a.v); }
+template <bool takes> HD inline void addToOthers(float* p, Wide a) {
+    addToOthers<takes>(p, WideTag(), a.v);
+}
 
 HD inline float mulAdd(float a, float b, float c) { return a * b + c; }
 HD inline float negMulAdd(float a, float b, float c) { return c - a * b; }
@@ -105,9 +128,15 @@ HD inline float roundDown(float a) { return std::floor(a); }
 
 HD inline float loadAt(const float* p, int i) { return p[i]; }
 HD inline void storeAt(float* p, int i, float value) { p[i] = value; }
-HD inline Pack<QuadTag> loadAt(const float* p, Quad i) { return Pack<QuadTag>(hn::LoadU(QuadTag(), p + i.first)); }
-HD inline void storeAt(float* p, Quad i, Pack<QuadTag> value) { hn::StoreU(value.v, QuadTag(), p + i.first); }
-HD inline Wide loadAt(const float* p, Four j) { return Wide(hn::LoadDup128(WideTag(), p + j.first)); }
+HD inline Pack<QuadTag> loadAt(const float* p, Quad i) {
+    return Pack<QuadTag>(hn::LoadU(QuadTag(), p + i.first));
+}
+HD inline void storeAt(float* p, Quad i, Pack<QuadTag> value) {
+    hn::StoreU(value.v, QuadTag(), p + i.first);
+}
+HD inline Wide loadAt(const float* p, Four j) {
+    return Wide(hn::LoadDup128(WideTag(), p + j.first));
+}
 
 HD inline Wide permute(Wide a, const int32_t* lanes) {
     return Wide(hn::TableLookupLanes(a.v, hn::SetTableIndices(WideTag(), lanes)));
@@ -122,10 +151,12 @@ HD inline void storeAt(float* p, Group i, Wide value) {
     if constexpr (width == 4)
         p[i.first] = hn::GetLane(value.v);
     else
-        hn::BlendedStore(permute(value, firsts).v, hn::FirstN(WideTag(), Group::size), WideTag(), p + i.first);
+        hn::BlendedStore(permute(value, firsts).v, hn::FirstN(WideTag(), Group::size), WideTag(),
+                         p + i.first);
 }
 
-// Calls pass(index) until all particles in [begin, end) are done; both are multiples of clusterSize.
+// Calls pass(index) until all particles in [begin, end) are done; both are multiples of
+// clusterSize.
 template <class Pass> void runRange(const Pass& pass, int begin, int end) {
     using Index = typename Pass::Index;
     if constexpr (std::is_same_v<Index, Group>) {
@@ -138,7 +169,8 @@ template <class Pass> void runRange(const Pass& pass, int begin, int end) {
 }
 
 // Adds reduction.addTo for every particle in [begin, end).
-template <class Reduction, class Value> void sumRange(const Reduction& reduction, int begin, int end, Value& sum) {
+template <class Reduction, class Value>
+void sumRange(const Reduction& reduction, int begin, int end, Value& sum) {
     for (int i = begin; i < end; ++i) reduction.addTo(sum, i);
 }
 

@@ -79,10 +79,12 @@ double numberOf(std::string cell, char& decimal) {
 
 std::ifstream openTable(const std::string& path) {
     std::error_code none;
-    if (!std::filesystem::exists(path, none)) throw Error(Exit::Scene, path + ": no such file; check the path");
+    if (!std::filesystem::exists(path, none))
+        throw Error(Exit::Scene, path + ": no such file; check the path");
     std::ifstream stream(path);
     if (!stream || std::filesystem::is_directory(path, none))
-        throw Error(Exit::Scene, path + ": can't be read; it is a folder, or its permissions forbid it");
+        throw Error(Exit::Scene,
+                    path + ": can't be read; it is a folder, or its permissions forbid it");
     const std::string wide[] = {"\xff\xfe", "\xfe\xff"}, mark = "\xef\xbb\xbf";
     std::string start(mark.size(), 0);
     stream.read(start.data(), long(start.size()));
@@ -141,7 +143,8 @@ Table readRows(const std::string& path, std::istream& stream, int number, const 
             if (complaints) complaints->push_back("line " + std::to_string(number) + ": " + what);
         };
         if (cells.size() != names.size())
-            complain(std::to_string(cells.size()) + " values for " + std::to_string(names.size()) + " columns");
+            complain(std::to_string(cells.size()) + " values for " + std::to_string(names.size()) +
+                     " columns");
         for (size_t k = 0; k < names.size(); ++k) {
             const double value = k < cells.size() ? numberOf(cells[k], decimal) : std::nan("");
             if (k < cells.size() && !std::isfinite(value)) complain(names[k] + " is no number");
@@ -149,7 +152,9 @@ Table readRows(const std::string& path, std::istream& stream, int number, const 
         }
         table.lines.push_back(number);
     }
-    if (table.rows() == 0) throw Error(Exit::Scene, path + ": has no rows of numbers; the first line names the columns");
+    if (table.rows() == 0)
+        throw Error(Exit::Scene,
+                    path + ": has no rows of numbers; the first line names the columns");
     return table;
 }
 
@@ -218,16 +223,19 @@ Table readStrictTable(const std::string& path, const std::vector<TableColumn>& k
 void refuseAny(const std::string& path, const std::vector<std::string>& complaints) {
     constexpr size_t Most = 3;
     std::string text;
-    for (size_t i = 0; i < std::min(Most, complaints.size()); ++i) text += (i ? "; " : "") + complaints[i];
-    if (complaints.size() > Most) text += "; and " + std::to_string(complaints.size() - Most) + " more";
-    if (!text.empty()) throw Error(Exit::Scene, path + ": " + text + "; mend or remove these lines");
+    for (size_t i = 0; i < std::min(Most, complaints.size()); ++i)
+        text += (i ? "; " : "") + complaints[i];
+    if (complaints.size() > Most)
+        text += "; and " + std::to_string(complaints.size() - Most) + " more";
+    if (!text.empty())
+        throw Error(Exit::Scene, path + ": " + text + "; mend or remove these lines");
 }
 
 int64_t countRows(const std::string& path) {
     std::ifstream stream = openTable(path);
     std::string line;
     int number = 0;
-    int64_t count = -1;   // without the names
+    int64_t count = -1;  // without the names
     while (nextLine(stream, line, number)) ++count;
     return std::max<int64_t>(count, 0);
 }

@@ -10,8 +10,9 @@
 namespace spindrift {
 
 struct Table {
-    std::map<std::string, std::vector<double>> columns;   // of equal length; a cell that is no number is NaN
-    std::vector<int> lines;                               // of the file, that each row stands in, from 1
+    std::map<std::string, std::vector<double>>
+        columns;             // of equal length; a cell that is no number is NaN
+    std::vector<int> lines;  // of the file, that each row stands in, from 1
     size_t rows() const { return lines.size(); }
     bool has(const std::string& name) const { return columns.contains(name); }
     const std::vector<double>& at(const std::string& name) const { return columns.at(name); }
@@ -35,7 +36,8 @@ std::vector<std::string> columnsOf(const std::string& path);
 // How many rows there are, without reading them. Throws Error (Scene) when the file is missing.
 int64_t countRows(const std::string& path);
 
-// Throws Error (Scene) with the first of these, "line 7: x is no number", and how many more there are; does nothing when there are none.
+// Throws Error (Scene) with the first of these, "line 7: x is no number", and how many more there
+// are; does nothing when there are none.
 void refuseAny(const std::string& path, const std::vector<std::string>& complaints);
 
 // y at x by straight lines between points of increasing x; the ends' values beyond them.

@@ -6,7 +6,7 @@ namespace spindrift {
 
 struct Task {
     std::atomic<const char*> doing = "";
-    std::atomic<double> share = 0;   // done, 0 to 1
+    std::atomic<double> share = 0;  // done, 0 to 1
     std::atomic<bool> unwanted = false;
 };
 

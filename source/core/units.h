@@ -1,5 +1,6 @@
 #pragma once
-// Units as people write them in the header of a table: "g/cm³", "g/cm^3", "kg m-3", "km/h", "µm", "MPA".
+// Units as people write them in the header of a table: "g/cm³", "g/cm^3", "kg m-3", "km/h", "µm",
+// "MPA".
 #include <optional>
 #include <string>
 

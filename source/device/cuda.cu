@@ -9,8 +9,9 @@ namespace spindrift {
 using namespace cudaKernels;
 
 // --- the passes of the sort ---
-// A counting sort: particles per cell, running sum, a place in its cell for each. Atomic operations hand the places out in
-// any order; each particle then counts those of its cell that come before it, which makes the sort stable.
+// A counting sort: particles per cell, running sum, a place in its cell for each. Atomic operations
+// hand the places out in any order; each particle then counts those of its cell that come before
+// it, which makes the sort stable.
 
 namespace {
 
@@ -34,7 +35,8 @@ struct OrderInCell {
     const int* unordered;
     int* order;
     __device__ void operator()(int slot) const {
-        const int item = unordered[slot], begin = cellStart[key[item]], end = cellStart[key[item] + 1];
+        const int item = unordered[slot], begin = cellStart[key[item]],
+                  end = cellStart[key[item] + 1];
         int before = 0;
         for (int s = begin; s < end; ++s) before += unordered[s] < item;
         order[begin + before] = item;
@@ -54,8 +56,8 @@ static std::string noDriverOrTooOld() {
     cudaDriverGetVersion(&driver);
     cudaRuntimeGetVersion(&runtime);
     if (driver == 0) return "there is no NVIDIA driver on this machine";
-    return "the NVIDIA driver knows CUDA " + version(driver) + ", this program needs " + version(runtime) +
-           "; update the driver";
+    return "the NVIDIA driver knows CUDA " + version(driver) + ", this program needs " +
+           version(runtime) + "; update the driver";
 }
 
 std::string cudaProblem(int index) {
@@ -66,16 +68,22 @@ std::string cudaProblem(int index) {
     if (code == cudaErrorNoDevice || (code == cudaSuccess && count == 0)) return "no CUDA device";
     if (code != cudaSuccess) return std::string("CUDA does not start: ") + cudaGetErrorString(code);
     if (index < 0 || index >= count)
-        return "no CUDA device " + std::to_string(index) + "; there are " + std::to_string(count) + ", counted from 0";
+        return "no CUDA device " + std::to_string(index) + "; there are " + std::to_string(count) +
+               ", counted from 0";
     // A kernel that the build has for no architecture of this device can't be loaded.
     cudaFuncAttributes attributes{};
     cudaDeviceProp device{};
-    if (cudaGetDeviceProperties(&device, index) != cudaSuccess || cudaSetDevice(index) != cudaSuccess)
-        return "CUDA device " + std::to_string(index) + " does not answer: " + cudaGetErrorString(cudaGetLastError());
-    if (const cudaError_t load = cudaFuncGetAttributes(&attributes, runPass<CountCells>); load != cudaSuccess) {
+    if (cudaGetDeviceProperties(&device, index) != cudaSuccess ||
+        cudaSetDevice(index) != cudaSuccess)
+        return "CUDA device " + std::to_string(index) +
+               " does not answer: " + cudaGetErrorString(cudaGetLastError());
+    if (const cudaError_t load = cudaFuncGetAttributes(&attributes, runPass<CountCells>);
+        load != cudaSuccess) {
         cudaGetLastError();
-        const std::string architecture = std::to_string(device.major) + std::to_string(device.minor);
-        return "this build has no code for " + std::string(device.name) + " (" + cudaGetErrorString(load) +
+        const std::string architecture =
+            std::to_string(device.major) + std::to_string(device.minor);
+        return "this build has no code for " + std::string(device.name) + " (" +
+               cudaGetErrorString(load) +
                "); build with -DSPINDRIFT_CUDA_ARCHITECTURES=" + architecture;
     }
     return "";
@@ -96,13 +104,17 @@ int64_t cudaFreeMemory(int index) {
 
 void requireCuda(cudaError_t code, const char* what) {
     if (code == cudaSuccess) return;
-    cudaGetLastError();   // the next call must not find it again
+    cudaGetLastError();  // the next call must not find it again
     const std::string message = std::string(what) + ": " + cudaGetErrorString(code);
     if (code == cudaErrorMemoryAllocation)
-        throw Error(Exit::Memory, "out of GPU memory while " + message + "; raise simulation.spacing or use --backend cpu");
-    if (code == cudaErrorNoDevice || code == cudaErrorInsufficientDriver || code == cudaErrorNoKernelImageForDevice)
-        throw Error(Exit::NoDevice, "the GPU can't be used while " + message + "; use --backend cpu");
-    throw Error(Exit::DeviceLost, "the GPU was lost while " + message + "; start again, or use --backend cpu");
+        throw Error(Exit::Memory, "out of GPU memory while " + message +
+                                      "; raise simulation.spacing or use --backend cpu");
+    if (code == cudaErrorNoDevice || code == cudaErrorInsufficientDriver ||
+        code == cudaErrorNoKernelImageForDevice)
+        throw Error(Exit::NoDevice,
+                    "the GPU can't be used while " + message + "; use --backend cpu");
+    throw Error(Exit::DeviceLost,
+                "the GPU was lost while " + message + "; start again, or use --backend cpu");
 }
 
 // --- the device ---
@@ -116,8 +128,10 @@ Cuda::Cuda(int index) : Cuda(index, Nothing{}) {
 }
 
 Cuda::Cuda(Cuda&& other) noexcept
-    : index_(other.index_), stream_(std::exchange(other.stream_, nullptr)),
-      scratch_(std::exchange(other.scratch_, nullptr)), bytes_(other.bytes_) {}
+    : index_(other.index_),
+      stream_(std::exchange(other.stream_, nullptr)),
+      scratch_(std::exchange(other.scratch_, nullptr)),
+      bytes_(other.bytes_) {}
 
 // Errors are of no use here: a device that was lost has lost its memory too.
 Cuda::~Cuda() {
@@ -146,7 +160,7 @@ void Cuda::release(void* p, size_t bytes) {
     if (!p) return;
     CHECK(!recording_);
     cudaSetDevice(index_);
-    cudaFree(p);   // waits for the work that may still use it
+    cudaFree(p);  // waits for the work that may still use it
     bytes_ -= int64_t(bytes);
 }
 
@@ -168,12 +182,17 @@ void Cuda::wait() const {
     requireCuda(cudaStreamSynchronize(stream_), "stepping");
 }
 
-int Cuda::sortByCell(int n, const int* key, int rows, int rowLength, int pad, int* cellStart, Buffer<int, Cuda>& order) {
+int Cuda::sortByCell(int n, const int* key, int rows, int rowLength, int pad, int* cellStart,
+                     Buffer<int, Cuda>& order) {
     CHECK(pad == 1);
     const size_t cells = size_t(rows) * size_t(rowLength), aligned = 256;
-    auto padded = [&](size_t numbers) { return (numbers * sizeof(int) + aligned - 1) / aligned * aligned; };
+    auto padded = [&](size_t numbers) {
+        return (numbers * sizeof(int) + aligned - 1) / aligned * aligned;
+    };
     size_t scanBytes = 0;
-    requireCuda(cub::DeviceScan::ExclusiveSum(nullptr, scanBytes, key, cellStart, int(cells + 1), stream_), "sorting");
+    requireCuda(
+        cub::DeviceScan::ExclusiveSum(nullptr, scanBytes, key, cellStart, int(cells + 1), stream_),
+        "sorting");
     const size_t bytes = padded(cells + 1) + padded(size_t(n)) + scanBytes;
     if (bytes > sortSpaceBytes_) {
         release(std::exchange(sortSpace_, nullptr), std::exchange(sortSpaceBytes_, 0));
@@ -188,7 +207,9 @@ int Cuda::sortByCell(int n, const int* key, int rows, int rowLength, int pad, in
     order.resize(n);
     clear(counts, (cells + 1) * sizeof(int));
     forEach(n, CountCells{key, counts});
-    requireCuda(cub::DeviceScan::ExclusiveSum(scan, scanBytes, counts, cellStart, int(cells + 1), stream_), "sorting");
+    requireCuda(
+        cub::DeviceScan::ExclusiveSum(scan, scanBytes, counts, cellStart, int(cells + 1), stream_),
+        "sorting");
     forEach(n, PlaceInCell{key, cellStart, counts, unordered});
     forEach(n, OrderInCell{key, cellStart, unordered, order.data()});
     return n;
@@ -209,7 +230,8 @@ bool Cuda::replay(Recording& recording) {
 
 void Cuda::beginRecording() {
     activate();
-    requireCuda(cudaStreamBeginCapture(stream_, cudaStreamCaptureModeThreadLocal), "recording a step");
+    requireCuda(cudaStreamBeginCapture(stream_, cudaStreamCaptureModeThreadLocal),
+                "recording a step");
     recording_ = true;
 }
 
@@ -224,14 +246,16 @@ void Cuda::endRecording(Recording& recording) {
     recording_ = false;
     cudaGraph_t graph = nullptr;
     requireCuda(cudaStreamEndCapture(stream_, &graph), "recording a step");
-    // The same passes with other constants fit into what is there, which is quicker than making it anew.
+    // The same passes with other constants fit into what is there, which is quicker than making it
+    // anew.
     cudaGraphExecUpdateResultInfo info{};
     if (recording.graph_ && cudaGraphExecUpdate(recording.graph_, graph, &info) != cudaSuccess) {
         cudaGetLastError();
         cudaGraphExecDestroy(recording.graph_);
         recording.graph_ = nullptr;
     }
-    const cudaError_t made = recording.graph_ ? cudaSuccess : cudaGraphInstantiate(&recording.graph_, graph, 0);
+    const cudaError_t made =
+        recording.graph_ ? cudaSuccess : cudaGraphInstantiate(&recording.graph_, graph, 0);
     cudaGraphDestroy(graph);
     requireCuda(made, "recording a step");
     recording.current_ = true;

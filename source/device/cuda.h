@@ -1,8 +1,8 @@
 #pragma once
-// One NVIDIA GPU: its memory, and its kernels on one stream. The host waits only where it reads something. Results don't
-// depend on the order in which threads run: loops write their own elements only, the sort is stable, sums go by a fixed
-// tree, and the only atomic operations add integers. Compiled by nvcc, and by the host compiler over the emulation of
-// tests/cuda.
+// One NVIDIA GPU: its memory, and its kernels on one stream. The host waits only where it reads
+// something. Results don't depend on the order in which threads run: loops write their own elements
+// only, the sort is stable, sums go by a fixed tree, and the only atomic operations add integers.
+// Compiled by nvcc, and by the host compiler over the emulation of tests/cuda.
 #include "core/error.h"
 #include "core/pass_time.h"
 #include "device/buffer.h"
@@ -18,14 +18,15 @@
 
 namespace spindrift {
 
-// Throws Error (Memory, NoDevice, DeviceLost) unless the call succeeded; `what` says what was being done.
+// Throws Error (Memory, NoDevice, DeviceLost) unless the call succeeded; `what` says what was being
+// done.
 void requireCuda(cudaError_t, const char* what);
 
 namespace cudaKernels {
 
-inline constexpr int blockSize = 128;      // threads that run a pass
-inline constexpr int sumBlockSize = 128;   // threads that add up
-inline constexpr int sumBlocks = 1024;     // at most; their sums are added by one more block
+inline constexpr int blockSize = 128;     // threads that run a pass
+inline constexpr int sumBlockSize = 128;  // threads that add up
+inline constexpr int sumBlocks = 1024;    // at most; their sums are added by one more block
 
 template <class Pass> __global__ void __launch_bounds__(blockSize) runPass(int n, Pass pass) {
     const int i = int(blockIdx.x * blockDim.x + threadIdx.x);
@@ -33,13 +34,14 @@ template <class Pass> __global__ void __launch_bounds__(blockSize) runPass(int n
 }
 
 // sums[block] = what reduction.addTo adds for the i of this block.
-template <class Value, class Reduction>
-__global__ void __launch_bounds__(sumBlockSize) addUp(int n, Reduction reduction, Value* sums) {
+template <class Value, class Reduction> __global__ void __launch_bounds__(sumBlockSize)
+    addUp(int n, Reduction reduction, Value* sums) {
     __shared__ __align__(16) unsigned char memory[sizeof(Value) * sumBlockSize];
     Value* parts = reinterpret_cast<Value*>(memory);
     const int thread = int(threadIdx.x);
     Value sum;
-    for (int i = int(blockIdx.x) * sumBlockSize + thread; i < n; i += int(gridDim.x) * sumBlockSize) reduction.addTo(sum, i);
+    for (int i = int(blockIdx.x) * sumBlockSize + thread; i < n; i += int(gridDim.x) * sumBlockSize)
+        reduction.addTo(sum, i);
     new (parts + thread) Value(sum);
     for (int half = sumBlockSize / 2; half > 0; half /= 2) {
         __syncthreads();
@@ -52,11 +54,13 @@ template <class Value> struct AddParts {
     __device__ void addTo(Value& sum, int i) const { sum.add(parts[i]); }
 };
 
-template <class Pass> __global__ void __launch_bounds__(blockSize) countBins(int n, Pass pass, int* counts) {
+template <class Pass> __global__ void __launch_bounds__(blockSize)
+    countBins(int n, Pass pass, int* counts) {
     __shared__ int own[Pass::bins];
     for (int b = int(threadIdx.x); b < Pass::bins; b += blockSize) own[b] = 0;
     __syncthreads();
-    for (int i = int(blockIdx.x) * blockSize + int(threadIdx.x); i < n; i += int(gridDim.x) * blockSize)
+    for (int i = int(blockIdx.x) * blockSize + int(threadIdx.x); i < n;
+         i += int(gridDim.x) * blockSize)
         if (const int bin = pass.bin(i); bin >= 0) atomicAdd(&own[bin], 1);
     __syncthreads();
     for (int b = int(threadIdx.x); b < Pass::bins; b += blockSize)
@@ -91,23 +95,30 @@ public:
 
     int index() const { return index_; }
     cudaStream_t stream() const { return stream_; }
-    int64_t bytes() const { return bytes_; }   // held by buffers
+    int64_t bytes() const { return bytes_; }  // held by buffers
 
     // Zeroed memory. Throws Error (Memory).
-    template <class T> T* allocate(size_t n) { return static_cast<T*>(allocateBytes(n * sizeof(T))); }
+    template <class T> T* allocate(size_t n) {
+        return static_cast<T*>(allocateBytes(n * sizeof(T)));
+    }
     void release(void* p, size_t bytes);
-    template <class T> void upload(T* to, const T* from, size_t n) { copy(to, from, n * sizeof(T), cudaMemcpyHostToDevice); }
+    template <class T> void upload(T* to, const T* from, size_t n) {
+        copy(to, from, n * sizeof(T), cudaMemcpyHostToDevice);
+    }
     template <class T> void download(T* to, const T* from, size_t n) const {
         copy(to, from, n * sizeof(T), cudaMemcpyDeviceToHost);
     }
 
     // Runs a pass over [0, n), one particle a thread.
     template <class Pass> void forEach(int n, const Pass& pass) {
-        if (n > 0) launch(cudaKernels::runPass<Pass>, blocksFor(n), cudaKernels::blockSize, n, pass);
+        if (n > 0)
+            launch(cudaKernels::runPass<Pass>, blocksFor(n), cudaKernels::blockSize, n, pass);
     }
 
-    // *out = the sum (Value::add) of what reduction.addTo adds for i in [0, n); `out` is memory of the device.
-    template <class Value, class Reduction> void reduce(int n, const Reduction& reduction, Value* out) {
+    // *out = the sum (Value::add) of what reduction.addTo adds for i in [0, n); `out` is memory of
+    // the device.
+    template <class Value, class Reduction>
+    void reduce(int n, const Reduction& reduction, Value* out) {
         using namespace cudaKernels;
         static_assert(sizeof(Value) * (sumBlocks + 1) <= scratchBytes);
         Value* parts = static_cast<Value*>(scratch_);
@@ -129,19 +140,23 @@ public:
         static_assert(Pass::bins * sizeof(int) <= scratchBytes);
         int* counts = static_cast<int*>(scratch_);
         clear(counts, Pass::bins * sizeof(int));
-        if (n > 0) launch(cudaKernels::countBins<Pass>, std::min(blocksFor(n), 256), cudaKernels::blockSize, n, pass, counts);
+        if (n > 0)
+            launch(cudaKernels::countBins<Pass>, std::min(blocksFor(n), 256),
+                   cudaKernels::blockSize, n, pass, counts);
         std::vector<int> host(Pass::bins);
         download(host.data(), counts, host.size());
         return host;
     }
 
     // As Omp::sortByCell, without padding (pad 1) and without items to drop: returns n.
-    int sortByCell(int n, const int* key, int rows, int rowLength, int pad, int* cellStart, Buffer<int, Cuda>& order);
+    int sortByCell(int n, const int* key, int rows, int rowLength, int pad, int* cellStart,
+                   Buffer<int, Cuda>& order);
 
-    // Steps are recorded as CUDA graphs. `f` launches work and reads nothing; it is not run, it is noted and then run.
+    // Steps are recorded as CUDA graphs. `f` launches work and reads nothing; it is not run, it is
+    // noted and then run.
     static constexpr bool recordsSteps = true;
     using Recording = CudaRecording;
-    bool replay(Recording&);   // false: nothing was done, the recording doesn't hold
+    bool replay(Recording&);  // false: nothing was done, the recording doesn't hold
     template <class F> void record(Recording& recording, const F& f) {
         beginRecording();
         try {
@@ -175,12 +190,18 @@ public:
 
 private:
     struct Nothing {};
-    Cuda(int index, Nothing) : index_(index) {}   // once this is done the destructor cleans up, whatever fails next
+    Cuda(int index, Nothing)
+        : index_(index) {}  // once this is done the destructor cleans up, whatever fails next
 
     static constexpr size_t scratchBytes = 256 << 10;
-    struct Span { cudaEvent_t begin, end; PassTime* time; };
+    struct Span {
+        cudaEvent_t begin, end;
+        PassTime* time;
+    };
 
-    static int blocksFor(int n) { return (n + cudaKernels::blockSize - 1) / cudaKernels::blockSize; }
+    static int blocksFor(int n) {
+        return (n + cudaKernels::blockSize - 1) / cudaKernels::blockSize;
+    }
     template <class... Parameters, class... Arguments>
     void launch(void (*kernel)(Parameters...), int blocks, int threads, Arguments&&... arguments) {
         activate();
@@ -188,9 +209,10 @@ private:
         config.gridDim = dim3(unsigned(blocks));
         config.blockDim = dim3(unsigned(threads));
         config.stream = stream_;
-        requireCuda(cudaLaunchKernelEx(&config, kernel, std::forward<Arguments>(arguments)...), "starting a kernel");
+        requireCuda(cudaLaunchKernelEx(&config, kernel, std::forward<Arguments>(arguments)...),
+                    "starting a kernel");
     }
-    void activate() const;   // CUDA calls go to the device that the calling thread chose last
+    void activate() const;  // CUDA calls go to the device that the calling thread chose last
     void* allocateBytes(size_t bytes);
     void copy(void* to, const void* from, size_t bytes, cudaMemcpyKind) const;
     void clear(void* memory, size_t bytes);
@@ -203,13 +225,13 @@ private:
 
     int index_;
     cudaStream_t stream_ = nullptr;
-    void* scratch_ = nullptr;      // for partial sums
+    void* scratch_ = nullptr;  // for partial sums
     void* sortSpace_ = nullptr;
     size_t sortSpaceBytes_ = 0;
     int64_t bytes_ = 0;
     bool recording_ = false;
     std::vector<Span> spans_;
-    std::vector<cudaEvent_t> idle_;   // events to be used again
+    std::vector<cudaEvent_t> idle_;  // events to be used again
 };
 
 }  // namespace spindrift

@@ -5,7 +5,8 @@
 
 namespace spindrift {
 
-// Why the CUDA device with this number can't be used, and how to mend it, in one line; "" when it can.
+// Why the CUDA device with this number can't be used, and how to mend it, in one line; "" when it
+// can.
 std::string cudaProblem(int index);
 // "NVIDIA H200"
 std::string cudaDeviceName(int index);

@@ -30,7 +30,8 @@ int Omp::sortByCell(int n, const int* key, int rows, int rowLength, int pad, int
     order.resize(slots);
     int* slotItem = order.data();
 
-    // Counts become first slots: row by row, cell by cell, thread by thread, which keeps the sort stable.
+    // Counts become first slots: row by row, cell by cell, thread by thread, which keeps the sort
+    // stable.
 #pragma omp parallel for schedule(static) num_threads(threads)
     for (int t = 0; t < threads; ++t)
         for (int r = firstRow(t); r < firstRow(t + 1); ++r) {

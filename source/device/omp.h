@@ -1,6 +1,6 @@
 #pragma once
-// The host: its memory, its cores. Results never depend on the number of threads: loops write their own
-// elements only, the sort is stable, reductions run over fixed blocks in a fixed order.
+// The host: its memory, its cores. Results never depend on the number of threads: loops write their
+// own elements only, the sort is stable, reductions run over fixed blocks in a fixed order.
 #include "core/pass_time.h"
 #include "core/vertex.h"
 #include "device/buffer.h"
@@ -23,9 +23,10 @@ public:
     explicit Omp(int threads, bool adapts = false) : team_(threads, adapts) {}
     int threads() const { return team_.size(); }
     static constexpr int index() { return hostMemory; }
-    int64_t bytes() const { return bytes_; }   // held by buffers
+    int64_t bytes() const { return bytes_; }  // held by buffers
 
-    // Zeroed memory, aligned for any vector and readable one vector past its end; huge pages when it is large.
+    // Zeroed memory, aligned for any vector and readable one vector past its end; huge pages when
+    // it is large.
     template <class T> T* allocate(size_t n) {
         const size_t page = 2u << 20;
         const size_t wanted = n * sizeof(T) + 64;
@@ -42,13 +43,18 @@ public:
         std::free(p);
         bytes_ -= int64_t(bytes);
     }
-    template <class T> void upload(T* to, const T* from, size_t n) { std::copy(from, from + n, to); }
-    template <class T> void download(T* to, const T* from, size_t n) { std::copy(from, from + n, to); }
+    template <class T> void upload(T* to, const T* from, size_t n) {
+        std::copy(from, from + n, to);
+    }
+    template <class T> void download(T* to, const T* from, size_t n) {
+        std::copy(from, from + n, to);
+    }
 
     // Calls body(begin, end) for pieces of [0, n); pieces begin at multiples of `piece`.
     template <class Body> void forRanges(int n, int piece, const Body& body) {
         const int pieces = (n + piece - 1) / piece;
-        const int threads = std::min(team_.size(), (pieces + 3) / 4);   // waking a thread costs more than a few pieces
+        const int threads = std::min(
+            team_.size(), (pieces + 3) / 4);  // waking a thread costs more than a few pieces
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads) if (threads > 1)
         for (int k = 0; k < pieces; ++k) body(k * piece, std::min(n, (k + 1) * piece));
     }
@@ -66,7 +72,8 @@ public:
     }
 
     // *out = the sum (Value::add) of what reduction.addTo adds for i in [0, n), block by block.
-    template <class Value, class Reduction> void reduce(int n, const Reduction& reduction, Value* out) {
+    template <class Value, class Reduction>
+    void reduce(int n, const Reduction& reduction, Value* out) {
         const int block = 1024;
         const int blocks = (n + block - 1) / block;
         std::vector<Value> partial(blocks);
@@ -89,7 +96,8 @@ public:
     // How many i in [0, n) fall into each bin: pass.bin(i) in [0, Pass::bins), or -1 for none.
     template <class Pass> std::vector<int> histogram(int n, const Pass& pass) {
         const int block = 16384;
-        std::vector<std::vector<int>> partial((n + block - 1) / block, std::vector<int>(Pass::bins));
+        std::vector<std::vector<int>> partial((n + block - 1) / block,
+                                              std::vector<int>(Pass::bins));
         forRanges(n, block, [&](int begin, int end) {
             for (int i = begin; i < end; ++i)
                 if (const int bin = pass.bin(i); bin >= 0) ++partial[begin / block][bin];
@@ -100,10 +108,11 @@ public:
         return counts;
     }
 
-    // Stable counting sort of n items by key (a cell, or -1 to drop the item). Cells come in rows of
-    // `rowLength`; each row starts at a multiple of `pad` and is filled up with -1.
-    // Writes cellStart[rows * rowLength + 1] and order (slot -> item or -1); returns the number of slots.
-    int sortByCell(int n, const int* key, int rows, int rowLength, int pad, int* cellStart, Buffer<int, Omp>& order);
+    // Stable counting sort of n items by key (a cell, or -1 to drop the item). Cells come in rows
+    // of `rowLength`; each row starts at a multiple of `pad` and is filled up with -1. Writes
+    // cellStart[rows * rowLength + 1] and order (slot -> item or -1); returns the number of slots.
+    int sortByCell(int n, const int* key, int rows, int rowLength, int pad, int* cellStart,
+                   Buffer<int, Omp>& order);
 
     // Steps are run pass by pass, and each pass is measured.
     static constexpr bool recordsSteps = false;
@@ -128,13 +137,15 @@ private:
     template <class F> static double milliseconds(const F& f) {
         const auto start = std::chrono::steady_clock::now();
         f();
-        return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+        return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+            .count();
     }
 
     Team team_;
     int64_t bytes_ = 0;
-    std::vector<std::vector<int>> counts_;  // per thread and cell: first the count, then the next free slot
-    std::vector<int> rowSlots_;             // slots in a row, then their running sum
+    std::vector<std::vector<int>>
+        counts_;                 // per thread and cell: first the count, then the next free slot
+    std::vector<int> rowSlots_;  // slots in a row, then their running sum
 };
 
 }  // namespace spindrift

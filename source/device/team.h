@@ -7,9 +7,9 @@
 namespace spindrift {
 
 // All cores, while they are free. Where others use them each loop waits for the thread that is
-// kept from running, and a step can take ten times as long as on one core. So now and then some steps
-// are made with half or twice as many threads, or with one, and where that is clearly faster it stays
-// so. Results don't depend on it.
+// kept from running, and a step can take ten times as long as on one core. So now and then some
+// steps are made with half or twice as many threads, or with one, and where that is clearly faster
+// it stays so. Results don't depend on it.
 class Team {
 public:
     // Without `adapts` it is always `most`.
@@ -30,8 +30,8 @@ public:
 private:
     // Steps that make new neighbour lists take longer: so many have some of both kinds.
     static constexpr int Steps = 16;
-    // A trial that has failed is followed by as much time without, the next by twice as much, and so
-    // on: in the end trials take a fiftieth of the time.
+    // A trial that has failed is followed by as much time without, the next by twice as much, and
+    // so on: in the end trials take a fiftieth of the time.
     static constexpr double Faster = 1.2, LongestRest = 50;
 
     double settledTime() const {
@@ -55,14 +55,14 @@ private:
         trial_ = 0;
     }
 
-    int most_, settled_, trial_ = 0;   // threads; no trial: 0
+    int most_, settled_, trial_ = 0;  // threads; no trial: 0
     bool adapts_;
-    unsigned next_ = 0;   // of the others to try
-    std::array<double, Steps> recent_{};   // ms, of steps by the settled number
+    unsigned next_ = 0;                   // of the others to try
+    std::array<double, Steps> recent_{};  // ms, of steps by the settled number
     int64_t made_ = 0;
     int trialSteps_ = 0;
-    double patience_ = 0, trialTime_ = 0;   // ms
-    double rest_ = 1;   // times the trial's own time
+    double patience_ = 0, trialTime_ = 0;  // ms
+    double rest_ = 1;                      // times the trial's own time
 };
 
 }  // namespace spindrift

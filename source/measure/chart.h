@@ -9,7 +9,8 @@ struct Curve {
     std::string name;
     std::vector<double> x, y;
     enum Style { Line, Dashed, Points } style = Line;
-    std::vector<std::string> labels = {};   // beside its points, where there is room; fewer or none is allowed
+    std::vector<std::string> labels =
+        {};  // beside its points, where there is room; fewer or none is allowed
 };
 
 struct Chart {

@@ -17,15 +17,17 @@ namespace {
 using hdf5::Handle, hdf5::Trouble, hdf5::require;
 
 constexpr const char* Format = "spindrift checkpoint";
-constexpr int64_t Version = 5;   // 2: densities, where they are carried; 3: bodies, of mixtures; 4: motions of solids, objects;
-                                 // 5: per metre of depth in two dimensions
+constexpr int64_t Version =
+    5;  // 2: densities, where they are carried; 3: bodies, of mixtures; 4: motions of solids,
+        // objects; 5: per metre of depth in two dimensions
 
 // --- numbers and texts as attributes of the file ---
 
 void writeNumbers(hid_t file, const char* name, const std::vector<double>& values) {
     const hsize_t n = values.size();
     Handle space(H5Screate_simple(1, &n, nullptr), H5Sclose, name);
-    Handle attribute(H5Acreate2(file, name, H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, name);
+    Handle attribute(H5Acreate2(file, name, H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT),
+                     H5Aclose, name);
     require(H5Awrite(attribute, H5T_NATIVE_DOUBLE, values.data()), name);
 }
 std::vector<double> readNumbers(hid_t file, const char* name, size_t count) {
@@ -42,18 +44,22 @@ std::vector<double> readNumbers(hid_t file, const char* name, size_t count) {
 // --- arrays ---
 
 // [rows, columns], one row an element of T.
-template <class T> std::vector<T> readArray(hid_t file, const char* name, hid_t native, hsize_t columns) {
+template <class T>
+std::vector<T> readArray(hid_t file, const char* name, hid_t native, hsize_t columns) {
     const hdf5::Array array(file, name, 2);
     if (array.size[1] != columns) throw Trouble{name};
     std::vector<T> values(array.size[0] * columns / (sizeof(T) / H5Tget_size(native)));
-    if (!values.empty()) require(H5Dread(array.set, native, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), name);
+    if (!values.empty())
+        require(H5Dread(array.set, native, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), name);
     return values;
 }
-void writeFloats(hid_t file, const char* name, const std::string& unit, const void* data, size_t rows, hsize_t columns) {
+void writeFloats(hid_t file, const char* name, const std::string& unit, const void* data,
+                 size_t rows, hsize_t columns) {
     hdf5::writeArray(file, name, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, data, {rows, columns});
     hdf5::writeUnit(file, name, unit);
 }
-void writeVectors(hid_t file, const char* name, const std::string& unit, const std::vector<Vec3>& v) {
+void writeVectors(hid_t file, const char* name, const std::string& unit,
+                  const std::vector<Vec3>& v) {
     writeFloats(file, name, unit, v.data(), v.size(), 3);
 }
 std::vector<Vec3> readVectors(hid_t file, const char* name) {
@@ -65,7 +71,8 @@ std::vector<Vec3> readVectors(hid_t file, const char* name) {
 std::vector<double> numbersOf(const std::vector<SolidMotion>& solids) {
     std::vector<double> out;
     for (const SolidMotion& m : solids) {
-        for (const Vec3d& v : {m.place, m.velocity, m.angularMomentum}) out.insert(out.end(), {v.x, v.y, v.z});
+        for (const Vec3d& v : {m.place, m.velocity, m.angularMomentum})
+            out.insert(out.end(), {v.x, v.y, v.z});
         out.insert(out.end(), m.turn, m.turn + 4);
     }
     return out;
@@ -95,13 +102,18 @@ void writeAll(hid_t file, const Scene& scene, const RunState& s,
     writeNumbers(file, "version", {double(Version)});
     writeNumbers(file, "clock", {s.clock.time, s.clock.dt, double(s.clock.steps)});
     writeNumbers(file, "start",
-                 {s.start.low.x, s.start.low.y, s.start.low.z, s.start.high.x, s.start.high.y, s.start.high.z, s.start.speed});
+                 {s.start.low.x, s.start.low.y, s.start.low.z, s.start.high.x, s.start.high.y,
+                  s.start.high.z, s.start.speed});
     writeVectors(file, "positions", "m", s.particles.positions);
     writeVectors(file, "velocities", "m/s", s.particles.velocities);
     writeVectors(file, "walls", "m", s.particles.walls);
     if (!s.particles.solidSizes.empty())
-        writeNumbers(file, "solid sizes", std::vector<double>(s.particles.solidSizes.begin(), s.particles.solidSizes.end()));
-    if (!s.particles.bodies.empty()) hdf5::writeArray(file, "bodies", H5T_STD_U16LE, H5T_NATIVE_UINT16, s.particles.bodies.data(), {s.particles.bodies.size(), 1});
+        writeNumbers(
+            file, "solid sizes",
+            std::vector<double>(s.particles.solidSizes.begin(), s.particles.solidSizes.end()));
+    if (!s.particles.bodies.empty())
+        hdf5::writeArray(file, "bodies", H5T_STD_U16LE, H5T_NATIVE_UINT16,
+                         s.particles.bodies.data(), {s.particles.bodies.size(), 1});
     if (!s.solids.empty()) {
         writeNumbers(file, "solid motions", numbersOf(s.solids));
         std::vector<double> left;
@@ -111,10 +123,12 @@ void writeAll(hid_t file, const Scene& scene, const RunState& s,
     if (!s.objects.positions.empty()) {
         writeVectors(file, "object positions", "m", s.objects.positions);
         writeVectors(file, "object velocities", "m/s", s.objects.velocities);
-        hdf5::writeArray(file, "broken bonds", H5T_STD_U8LE, H5T_NATIVE_UCHAR, s.objects.broken.data(), {s.objects.broken.size(), 1});
+        hdf5::writeArray(file, "broken bonds", H5T_STD_U8LE, H5T_NATIVE_UCHAR,
+                         s.objects.broken.data(), {s.objects.broken.size(), 1});
     }
     if (!curves.empty()) writeFloats(file, "curves", "", curves.data(), curves.size(), 4);
-    if (!s.densities.empty()) writeFloats(file, "densities", "kg/m³", s.densities.data(), s.densities.size(), 1);
+    if (!s.densities.empty())
+        writeFloats(file, "densities", "kg/m³", s.densities.data(), s.densities.size(), 1);
 }
 
 // Until version 4 what has a depth in two dimensions was of a slab one spacing thick.
@@ -143,7 +157,8 @@ void readObjects(hid_t file, Checkpoint& c) {
     state.positions = readVectors(file, "object positions");
     state.velocities = readVectors(file, "object velocities");
     state.broken = readArray<uint8_t>(file, "broken bonds", H5T_NATIVE_UCHAR, 1);
-    if (state.positions.size() != objects.size() || state.velocities.size() != objects.size()) throw Trouble{"object positions"};
+    if (state.positions.size() != objects.size() || state.velocities.size() != objects.size())
+        throw Trouble{"object positions"};
     if (state.broken.size() != 2 * objects.bonds.size()) throw Trouble{"broken bonds"};
 }
 
@@ -163,28 +178,37 @@ Checkpoint readAll(hid_t file, const std::string& path) {
     c.state.particles.walls = readVectors(file, "walls");
     if (!c.scene.solids.empty()) readSolidSizes(file, c);
     const size_t solids = c.scene.solids.size();
-    if (H5Aexists(file, "solid motions") > 0) c.state.solids = motionsOf(readNumbers(file, "solid motions", 13 * solids));
-    if (H5Aexists(file, "keyframes left") > 0) {   // none in older files
+    if (H5Aexists(file, "solid motions") > 0)
+        c.state.solids = motionsOf(readNumbers(file, "solid motions", 13 * solids));
+    if (H5Aexists(file, "keyframes left") > 0) {  // none in older files
         const std::vector<double> left = readNumbers(file, "keyframes left", solids);
         for (size_t k = 0; k < c.state.solids.size(); ++k) c.state.solids[k].left = left[k];
     }
     const auto floats = [](const Solid& s) { return s.floats(); };
-    if (c.state.solids.empty() && std::any_of(c.scene.solids.begin(), c.scene.solids.end(), floats)) throw Trouble{"solid motions"};
+    if (c.state.solids.empty() && std::any_of(c.scene.solids.begin(), c.scene.solids.end(), floats))
+        throw Trouble{"solid motions"};
     if (!c.scene.objects.empty()) readObjects(file, c);
-    if (isMixture(c.scene)) c.state.particles.bodies = readArray<uint16_t>(file, "bodies", H5T_NATIVE_UINT16, 1);
-    if (carriesDensity(c.scene)) c.state.densities = readArray<float>(file, "densities", H5T_NATIVE_FLOAT, 1);
+    if (isMixture(c.scene))
+        c.state.particles.bodies = readArray<uint16_t>(file, "bodies", H5T_NATIVE_UINT16, 1);
+    if (carriesDensity(c.scene))
+        c.state.densities = readArray<float>(file, "densities", H5T_NATIVE_FLOAT, 1);
     static_assert(sizeof(CurvePoint) == 4 * sizeof(float));
     if (H5Lexists(file, "curves", H5P_DEFAULT) > 0)
         c.curves = readArray<CurvePoint>(file, "curves", H5T_NATIVE_FLOAT, 4);
-    if (c.state.particles.positions.empty() || c.state.particles.velocities.size() != c.state.particles.positions.size())
+    if (c.state.particles.positions.empty() ||
+        c.state.particles.velocities.size() != c.state.particles.positions.size())
         throw Trouble{"velocities"};
-    if (carriesDensity(c.scene) && c.state.densities.size() != c.state.particles.positions.size()) throw Trouble{"densities"};
-    if (isMixture(c.scene) && c.state.particles.bodies.size() != c.state.particles.positions.size()) throw Trouble{"bodies"};
+    if (carriesDensity(c.scene) && c.state.densities.size() != c.state.particles.positions.size())
+        throw Trouble{"densities"};
+    if (isMixture(c.scene) && c.state.particles.bodies.size() != c.state.particles.positions.size())
+        throw Trouble{"bodies"};
     for (const uint16_t body : c.state.particles.bodies)
         if (body >= c.scene.fluid.bodies.size()) throw Trouble{"bodies"};
     for (float rho : c.state.densities)
         if (!(std::isfinite(rho) && rho > 0)) throw Trouble{"densities"};
-    for (const auto* field : {&c.state.particles.positions, &c.state.particles.velocities, &c.state.particles.walls, &c.state.objects.positions, &c.state.objects.velocities})
+    for (const auto* field :
+         {&c.state.particles.positions, &c.state.particles.velocities, &c.state.particles.walls,
+          &c.state.objects.positions, &c.state.objects.velocities})
         for (const Vec3& v : *field)
             if (!std::isfinite(v.x + v.y + v.z)) throw Trouble{"numbers that are not finite"};
     if (version < 5) spreadOverMetre(c);
@@ -196,7 +220,8 @@ Checkpoint readAll(hid_t file, const std::string& path) {
 void writeCheckpoint(const std::string& path, const Scene& scene, const RunState& state,
                      const std::vector<CurvePoint>& curves) {
     replaceFile(path, [&](const std::string& temporary) {
-        return hdf5::writeFile(temporary, [&](hid_t file) { writeAll(file, scene, state, curves); });
+        return hdf5::writeFile(temporary,
+                               [&](hid_t file) { writeAll(file, scene, state, curves); });
     });
 }
 
@@ -206,11 +231,15 @@ Checkpoint readCheckpoint(const std::string& path) {
     try {
         const Handle file = hdf5::openFile(path);
         if (H5Lexists(file, Format, H5P_DEFAULT) <= 0)
-            throw Error(Exit::Scene, path + ": is an HDF5 file, but no checkpoint of Spindrift; give a scene or a checkpoint");
+            throw Error(Exit::Scene, path +
+                                         ": is an HDF5 file, but no checkpoint of Spindrift; give "
+                                         "a scene or a checkpoint");
         return readAll(file, path);
     } catch (const Trouble& trouble) {
-        throw Error(Exit::Scene, fmt::format("{}: the checkpoint is damaged or incomplete ({}); use an older one", path,
-                                             trouble.what));
+        throw Error(
+            Exit::Scene,
+            fmt::format("{}: the checkpoint is damaged or incomplete ({}); use an older one", path,
+                        trouble.what));
     }
 }
 

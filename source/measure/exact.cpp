@@ -45,18 +45,24 @@ double couetteFlow(double y, double t, double L, double nu, double V) {
 }
 
 void OscillatingDrop::advance(double dt) {
-    struct State { double a, rate; };
+    struct State {
+        double a, rate;
+    };
     auto slope = [](State s) -> State {
-        const double a2 = s.a * s.a, b2 = 1 / a2;   // the area stays
+        const double a2 = s.a * s.a, b2 = 1 / a2;  // the area stays
         return {s.rate * s.a, (s.rate * s.rate + 1) * (b2 - a2) / (a2 + b2)};
     };
-    auto along = [](State s, double h, State d) -> State { return {s.a + h * d.a, s.rate + h * d.rate}; };
+    auto along = [](State s, double h, State d) -> State {
+        return {s.a + h * d.a, s.rate + h * d.rate};
+    };
     const int steps = int(std::ceil(dt / 1e-3));
     const double h = steps > 0 ? dt / steps : 0;
     State s{a, rate};
-    for (int k = 0; k < steps; ++k) {   // Runge-Kutta, fourth order
-        const State k1 = slope(s), k2 = slope(along(s, h / 2, k1)), k3 = slope(along(s, h / 2, k2)), k4 = slope(along(s, h, k3));
-        s = {s.a + h / 6 * (k1.a + 2 * k2.a + 2 * k3.a + k4.a), s.rate + h / 6 * (k1.rate + 2 * k2.rate + 2 * k3.rate + k4.rate)};
+    for (int k = 0; k < steps; ++k) {  // Runge-Kutta, fourth order
+        const State k1 = slope(s), k2 = slope(along(s, h / 2, k1)), k3 = slope(along(s, h / 2, k2)),
+                    k4 = slope(along(s, h, k3));
+        s = {s.a + h / 6 * (k1.a + 2 * k2.a + 2 * k3.a + k4.a),
+             s.rate + h / 6 * (k1.rate + 2 * k2.rate + 2 * k3.rate + k4.rate)};
     }
     a = s.a, rate = s.rate;
 }
@@ -67,12 +73,14 @@ void SettlingSphere::advance(double dt) {
     const int steps = int(std::ceil(dt / 1e-4));
     for (int k = 0; k < steps; ++k) {
         const double before = speed;
-        speed += dt / steps * (ratio - 1) * gravity * (1 - drag(speed) / drag(terminal)) / (ratio + 0.5);
+        speed +=
+            dt / steps * (ratio - 1) * gravity * (1 - drag(speed) / drag(terminal)) / (ratio + 0.5);
         depth += dt / steps * 0.5 * (before + speed);
     }
 }
 
-// Gradients as sum V f(x_j) dW/dx, Laplacians as Morris 1997, both scaled so that lines and parabolas are exact, as simulations do.
+// Gradients as sum V f(x_j) dW/dx, Laplacians as Morris 1997, both scaled so that lines and
+// parabolas are exact, as simulations do.
 LatticeWave latticeWave(Kernel kernel, int dimensions, double support, double kdx) {
     const int n = int(support) + 1, across = dimensions == 3 ? n : 0;
     double sine = 0, cosine = 0, line = 0;
@@ -80,8 +88,10 @@ LatticeWave latticeWave(Kernel kernel, int dimensions, double support, double kd
         for (int z = -across; z <= across; ++z)
             for (int y = -n; y <= n; ++y)
                 for (int x = -n; x <= n; ++x) {
-                    const double g = decltype(one)::g(std::sqrt(double(x * x + y * y + z * z)) / support);
-                    sine += g * x * std::sin(kdx * x), cosine += 2 * g * (1 - std::cos(kdx * x)), line += g * x * x;
+                    const double g =
+                        decltype(one)::g(std::sqrt(double(x * x + y * y + z * z)) / support);
+                    sine += g * x * std::sin(kdx * x), cosine += 2 * g * (1 - std::cos(kdx * x)),
+                        line += g * x * x;
                 }
     });
     return {sine / line, cosine / line};

@@ -5,7 +5,8 @@
 
 namespace spindrift {
 
-// Vortices in a periodic square of side L, largest speed U at t = 0, rho0 the density: Taylor and Green 1937.
+// Vortices in a periodic square of side L, largest speed U at t = 0, rho0 the density: Taylor and
+// Green 1937.
 struct TaylorGreenFlow {
     double L = 1, U = 1, nu = 0.01, rho0 = 1;
     Vec3d velocity(Vec3d x, double t) const;   // m/s, x in m from a corner
@@ -13,30 +14,34 @@ struct TaylorGreenFlow {
     double decay(double t) const;              // of the velocity
 };
 
-// Flow between plates at y = 0 and y = L from rest: driven by a body force F (m/s²) along x, or by the upper plate that slides
-// with V (m/s). Morris, Fox and Zhu 1997, eq. 21 and 22.
+// Flow between plates at y = 0 and y = L from rest: driven by a body force F (m/s²) along x, or by
+// the upper plate that slides with V (m/s). Morris, Fox and Zhu 1997, eq. 21 and 22.
 double poiseuilleFlow(double y, double t, double L, double nu, double F);
 double couetteFlow(double y, double t, double L, double nu, double V);
 
-// A disc of radius 1 stretched along x with rate s0 = 1/s at the start, pulled to its centre by -Omega^2 r, Omega = 1/s: an ellipse
-// at all times (Monaghan and Rafiee 2013, appendix A).
+// A disc of radius 1 stretched along x with rate s0 = 1/s at the start, pulled to its centre by
+// -Omega^2 r, Omega = 1/s: an ellipse at all times (Monaghan and Rafiee 2013, appendix A).
 struct OscillatingDrop {
-    double a = 1, rate = 1;              // m, semi-axis along x; 1/s, its relative growth
-    static constexpr double period = 4.827343;   // s, of both
-    void advance(double dt);             // s
+    double a = 1, rate = 1;                     // m, semi-axis along x; 1/s, its relative growth
+    static constexpr double period = 4.827343;  // s, of both
+    void advance(double dt);                    // s
 };
 
-// A sphere that sinks from rest and takes half the mass of the fluid in its place along; its drag grows as that of Schiller and Naumann 1933, to its
-// weight at the speed `terminal`. Without what is left of earlier motion (Basset's force), which delays it a little.
+// A sphere that sinks from rest and takes half the mass of the fluid in its place along; its drag
+// grows as that of Schiller and Naumann 1933, to its weight at the speed `terminal`. Without what
+// is left of earlier motion (Basset's force), which delays it a little.
 struct SettlingSphere {
-    double diameter, density, fluidDensity, viscosity, gravity, terminal;   // m, kg/m³, Pa s, m/s², m/s
-    double depth = 0, speed = 0;                                            // m, m/s
-    void advance(double dt);                                                // s
+    double diameter, density, fluidDensity, viscosity, gravity,
+        terminal;                 // m, kg/m³, Pa s, m/s², m/s
+    double depth = 0, speed = 0;  // m, m/s
+    void advance(double dt);      // s
 };
 
-// What sums over a kernel's neighbours make of a wave sin(kx) along x on a lattice: k and k^2 as they see them, times dx and dx^2.
-// R / dx is the support.
-struct LatticeWave { double k, k2; };
+// What sums over a kernel's neighbours make of a wave sin(kx) along x on a lattice: k and k^2 as
+// they see them, times dx and dx^2. R / dx is the support.
+struct LatticeWave {
+    double k, k2;
+};
 LatticeWave latticeWave(Kernel kernel, int dimensions, double support, double kdx);
 
 }  // namespace spindrift

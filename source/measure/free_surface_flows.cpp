@@ -30,7 +30,7 @@ void runDrop(const Scene& scene, ValidationRun& run) {
     const Measurement first = sim->measure();
     double last = 0, axisSum = 0, momentum = 0;
     int axisCount = 0;
-    std::vector<double> crossings;   // s, when the drop is round again and widens
+    std::vector<double> crossings;  // s, when the drop is round again and widens
     double before = 0, timeBefore = 0;
     for (int k = 0; k <= Periods * PerPeriod + PerPeriod / 4; ++k) {
         sim.until(k * T / PerPeriod);
@@ -38,9 +38,12 @@ void runDrop(const Scene& scene, ValidationRun& run) {
         const Measurement m = sim->measure();
         exact.advance(m.time - last), last = m.time;
         double xx = 0, yy = 0;
-        for (const Particle& p : particles) xx += p.position.x * p.position.x, yy += p.position.y * p.position.y;
-        const double n = double(particles.size()), a = 2 * std::sqrt(xx / n), excess = a - 2 * std::sqrt(yy / n);
-        if (k > PerPeriod / 2 && before < 0 && excess >= 0)   // at the start the drop is round but for its last digits
+        for (const Particle& p : particles)
+            xx += p.position.x * p.position.x, yy += p.position.y * p.position.y;
+        const double n = double(particles.size()), a = 2 * std::sqrt(xx / n),
+                     excess = a - 2 * std::sqrt(yy / n);
+        if (k > PerPeriod / 2 && before < 0 &&
+            excess >= 0)  // at the start the drop is round but for its last digits
             crossings.push_back(timeBefore + (m.time - timeBefore) * before / (before - excess));
         before = excess, timeBefore = m.time;
         if (k <= 3 * PerPeriod) axisSum += std::pow(a - exact.a, 2), ++axisCount;
@@ -50,14 +53,19 @@ void runDrop(const Scene& scene, ValidationRun& run) {
     }
     const Measurement end = sim->measure();
     const double M = particleMass(scene) * run.cost.particles;
-    const double energy = end.kineticEnergy + end.potentialEnergy, start = first.kineticEnergy + first.potentialEnergy;
-    // Energy of a drop at rest would be left in potential energy: loss is measured against all, as Sun 2017 does.
-    const double period = crossings.size() >= Periods ? crossings[Periods - 1] / Periods : std::nan("");
+    const double energy = end.kineticEnergy + end.potentialEnergy,
+                 start = first.kineticEnergy + first.potentialEnergy;
+    // Energy of a drop at rest would be left in potential energy: loss is measured against all, as
+    // Sun 2017 does.
+    const double period =
+        crossings.size() >= Periods ? crossings[Periods - 1] / Periods : std::nan("");
     run.chart = {"", "t Omega", "a / R", {known, ours}};
-    run.metrics = {{"semi-axis, rms of 3 periods / R", "%", 100 * std::sqrt(axisSum / axisCount), {}},
-                   {"period", "%", 100 * (period / T - 1), targetAt(run.resolution, 50, 0.5)},
-                   {"energy after 10 periods", "%", 100 * (energy / start - 1), targetAt(run.resolution, 50, 3.0)},
-                   {"largest momentum / (M s0 R)", "", momentum / M, targetAt(run.resolution, 50, 3e-4)}};
+    run.metrics = {
+        {"semi-axis, rms of 3 periods / R", "%", 100 * std::sqrt(axisSum / axisCount), {}},
+        {"period", "%", 100 * (period / T - 1), targetAt(run.resolution, 50, 0.5)},
+        {"energy after 10 periods", "%", 100 * (energy / start - 1),
+         targetAt(run.resolution, 50, 3.0)},
+        {"largest momentum / (M s0 R)", "", momentum / M, targetAt(run.resolution, 50, 3e-4)}};
 }
 
 // --- C2 hydrostatic tank ---
@@ -68,13 +76,15 @@ namespace {
 void addBuoyancy(const Scene& scene, const Measurement& m, double volume, ValidationRun& run) {
     if (volume == 0) return;
     const double weight = scene.fluid.restDensity * -scene.simulation.gravity.y * volume;
-    run.metrics.push_back({"lift of the solid", "%", 100 * (m.solids[0].pressureForce.y / weight - 1), 2.0});
+    run.metrics.push_back(
+        {"lift of the solid", "%", 100 * (m.solids[0].pressureForce.y / weight - 1), 2.0});
 }
 
 }  // namespace
 
 void runHydrostatic(const Scene& scene, ValidationRun& run, int judgedFrom, double volume) {
-    const double g = -scene.simulation.gravity.y, H = scene.fluid.bodies[0].max.y, rho0 = scene.fluid.restDensity;
+    const double g = -scene.simulation.gravity.y, H = scene.fluid.bodies[0].max.y,
+                 rho0 = scene.fluid.restDensity;
     const double end = 20 * std::sqrt(H / g), width = scene.domain.max.x;
     Stepping sim(scene, run);
     Curve energy{"kinetic energy", {}, {}, Curve::Line};
@@ -95,7 +105,7 @@ void runHydrostatic(const Scene& scene, ValidationRun& run, int judgedFrom, doub
         top = std::max(top, p.position.y);
     }
     std::vector<Vec3d> floor;
-    for (int k = 1; k <= 5; ++k) {   // not where a solid stands
+    for (int k = 1; k <= 5; ++k) {  // not where a solid stands
         const Vec3d point{width * k / 6, 0, 0.5 * scene.domain.max.z};
         if (std::none_of(scene.solids.begin(), scene.solids.end(), [&](const Solid& s) {
                 const Convex shape = convexOf(s, scene.simulation.dimensions);
@@ -104,17 +114,21 @@ void runHydrostatic(const Scene& scene, ValidationRun& run, int judgedFrom, doub
             floor.push_back(point);
     }
     double bottom = 0;
-    for (const Fields& f : interpolate(particles, floor, supportRadius(scene))) bottom += f.pressure / double(floor.size());
+    for (const Fields& f : interpolate(particles, floor, supportRadius(scene)))
+        bottom += f.pressure / double(floor.size());
     run.chart = {"", "t sqrt(g / H)", "E_k / (M g H)", {energy}, false, true};
-    run.metrics = {{"pressure, rms / (rho g H)", "%", 100 * std::sqrt(sum / double(particles.size())) / (rho0 * g * H),
+    run.metrics = {{"pressure, rms / (rho g H)", "%",
+                    100 * std::sqrt(sum / double(particles.size())) / (rho0 * g * H),
                     targetAt(run.resolution, judgedFrom, 1.0)},
-                   {"pressure at the floor", "%", 100 * (bottom / (rho0 * g * H) - 1), targetAt(run.resolution, judgedFrom, 1.0)},
-                   {"kinetic energy / (M g H)", "", energy.y.back(), targetAt(run.resolution, judgedFrom, 1e-5)},
-                   {"its growth from t = 10 to 20", "", std::max(0.0, late / early - 1), targetAt(run.resolution, judgedFrom, 0.1)},
+                   {"pressure at the floor", "%", 100 * (bottom / (rho0 * g * H) - 1),
+                    targetAt(run.resolution, judgedFrom, 1.0)},
+                   {"kinetic energy / (M g H)", "", energy.y.back(),
+                    targetAt(run.resolution, judgedFrom, 1e-5)},
+                   {"its growth from t = 10 to 20", "", std::max(0.0, late / early - 1),
+                    targetAt(run.resolution, judgedFrom, 0.1)},
                    {"highest particle - H", "dx", (top - H) / scene.simulation.spacing + 0.5, {}}};
     addBuoyancy(scene, sim->measure(), volume, run);
 }
-
 
 // --- C13 dam break: front ---
 
@@ -125,7 +139,8 @@ void runFront(const Scene& scene, ValidationRun& run, const std::string& data) {
     Curve ours{"front", {}, {}, Curve::Line};
     for (int k = 0; k <= 100; ++k) {
         sim.until(k * 6.0 / 100 / scale);
-        ours.x.push_back(sim.time() * scale), ours.y.push_back(frontOf(sim->particles(), Axis::X) / a);
+        ours.x.push_back(sim.time() * scale),
+            ours.y.push_back(frontOf(sim->particles(), Axis::X) / a);
     }
     double sum = 0, most = 0;
     // Later the experiment's front thins out and friction holds it back.
@@ -137,7 +152,8 @@ void runFront(const Scene& scene, ValidationRun& run, const std::string& data) {
         const double error = valueAt(ours.x, ours.y, T[i]) / Z[i] - 1;
         sum += std::abs(error) / double(T.size()), most = std::max(most, std::abs(error));
     }
-    run.chart = {"", "t sqrt(2 g / a)", "front / a", {ours, {"Martin and Moyce 1952", T, Z, Curve::Points}}};
+    run.chart = {
+        "", "t sqrt(2 g / a)", "front / a", {ours, {"Martin and Moyce 1952", T, Z, Curve::Points}}};
     run.metrics = {{"front, mean difference", "%", 100 * sum, targetAt(run.resolution, 20, 8.0)},
                    {"front, largest difference", "%", 100 * most, {}}};
 }
@@ -147,7 +163,8 @@ void runFront(const Scene& scene, ValidationRun& run, const std::string& data) {
 namespace {
 
 // Mean over `window` about each time, by trapezoids between samples.
-std::vector<double> runningMean(const std::vector<double>& t, const std::vector<double>& p, double window) {
+std::vector<double> runningMean(const std::vector<double>& t, const std::vector<double>& p,
+                                double window) {
     std::vector<double> out;
     for (double at : t) {
         double sum = 0;
@@ -160,7 +177,8 @@ std::vector<double> runningMean(const std::vector<double>& t, const std::vector<
     return out;
 }
 
-double integral(const std::vector<double>& t, const std::vector<double>& p, double from, double to) {
+double integral(const std::vector<double>& t, const std::vector<double>& p, double from,
+                double to) {
     double sum = 0;
     for (size_t k = 1; k < t.size(); ++k)
         if (t[k - 1] >= from && t[k] <= to) sum += (t[k] - t[k - 1]) * (p[k] + p[k - 1]) / 2;
@@ -179,11 +197,14 @@ double arrivalOf(const std::vector<double>& t, const std::vector<double>& p, dou
 }  // namespace
 
 void runImpact(const Scene& scene, ValidationRun& run, const std::string& data) {
-    const Table experiment = readTable(data + "/lobovsky2014_H300_pressure.csv"), peaks = readTable(data + "/lobovsky2014_H300_peak_pressures.csv");
-    const double H = 0.3, g = -scene.simulation.gravity.y, rho0 = scene.fluid.restDensity, Latest = 4;
+    const Table experiment = readTable(data + "/lobovsky2014_H300_pressure.csv"),
+                peaks = readTable(data + "/lobovsky2014_H300_peak_pressures.csv");
+    const double H = 0.3, g = -scene.simulation.gravity.y, rho0 = scene.fluid.restDensity,
+                 Latest = 4;
     constexpr const char* Columns[] = {"S1_3mm", "S2_15mm", "S3_30mm"};
     const Probes sensors(scene);
-    const size_t sensor[] = {sensors.column("S1.pressure"), sensors.column("S2.pressure"), sensors.column("S3.pressure")};
+    const size_t sensor[] = {sensors.column("S1.pressure"), sensors.column("S2.pressure"),
+                             sensors.column("S3.pressure")};
     Stepping sim(scene, run);
     std::vector<double> t, p[3];
     for (int k = 0; k <= 800; ++k) {
@@ -193,10 +214,13 @@ void runImpact(const Scene& scene, ValidationRun& run, const std::string& data) 
         for (size_t s = 0; s < 3; ++s) p[s].push_back(readings[sensor[s]] / (rho0 * g * H));
     }
     const std::vector<double>& te = experiment.at("t_star");
-    const double impulse = integral(t, p[0], 2.4, Latest), measured = integral(te, experiment.at(Columns[0]), 2.4, Latest);
+    const double impulse = integral(t, p[0], 2.4, Latest),
+                 measured = integral(te, experiment.at(Columns[0]), 2.4, Latest);
     const double arrival = arrivalOf(t, p[0], 0.5);
-    run.metrics = {{"impulse at S1, 2.4 < t* < 4", "%", 100 * (impulse / measured - 1), targetAt(run.resolution, 80, 10.0)},
-                   {"arrival at S1, t* - 2.44", "", arrival - 2.44, targetAt(run.resolution, 80, 0.1)}};
+    run.metrics = {
+        {"impulse at S1, 2.4 < t* < 4", "%", 100 * (impulse / measured - 1),
+         targetAt(run.resolution, 80, 10.0)},
+        {"arrival at S1, t* - 2.44", "", arrival - 2.44, targetAt(run.resolution, 80, 0.1)}};
     run.chart = {"", "t sqrt(g / H)", "p / (rho g H)", {}};
     for (size_t s = 0; s < 3; ++s) {
         const std::vector<double> smooth = runningMean(t, p[s], 0.05);
@@ -204,9 +228,10 @@ void runImpact(const Scene& scene, ValidationRun& run, const std::string& data) 
         const double low = peaks.at("p2.5_P")[s], high = peaks.at("p97.5_P")[s];
         const double outside = std::max({0.0, low - peak, peak - high}) / peaks.at("median_P")[s];
         run.metrics.push_back({fmt::format("smoothed peak at S{}", s + 1), "", peak, {}});
-        run.metrics.push_back({fmt::format("beyond its 95 % band {:.2f} to {:.2f}", low, high), "%", 100 * outside,
-                               targetAt(run.resolution, 80, 0.0)});
-        Curve theirs{fmt::format("S{} measured", s + 1), te, experiment.at(Columns[s]), Curve::Dashed};
+        run.metrics.push_back({fmt::format("beyond its 95 % band {:.2f} to {:.2f}", low, high), "%",
+                               100 * outside, targetAt(run.resolution, 80, 0.0)});
+        Curve theirs{fmt::format("S{} measured", s + 1), te, experiment.at(Columns[s]),
+                     Curve::Dashed};
         const size_t end = size_t(std::lower_bound(te.begin(), te.end(), Latest) - te.begin());
         theirs.x.resize(end), theirs.y.resize(end);
         run.chart.curves.push_back({fmt::format("S{}", s + 1), t, smooth, Curve::Line});
@@ -214,16 +239,17 @@ void runImpact(const Scene& scene, ValidationRun& run, const std::string& data) 
     }
 }
 
-
 // --- Settling sphere ---
 
 void runSettling(const Scene& scene, ValidationRun& run, double terminal) {
     const Solid& sphere = scene.solids[0];
     const double end = 0.65, interval = 0.01;
-    SettlingSphere known{2 * double(sphere.radius), sphere.density, scene.fluid.restDensity, scene.fluid.viscosity, -scene.simulation.gravity.y,
-                         terminal};
+    SettlingSphere known{2 * double(sphere.radius),   sphere.density,
+                         scene.fluid.restDensity,     scene.fluid.viscosity,
+                         -scene.simulation.gravity.y, terminal};
     Stepping sim(scene, run);
-    Curve ours{"computed", {}, {}, Curve::Points}, theirs{"equation of motion", {}, {}, Curve::Line};
+    Curve ours{"computed", {}, {}, Curve::Points},
+        theirs{"equation of motion", {}, {}, Curve::Line};
     double last = 0, aside = 0, sunk = 0;
     for (int k = 0; k * interval <= end && !run.diverged; ++k) {
         sim.until(k * interval);
@@ -231,7 +257,8 @@ void runSettling(const Scene& scene, ValidationRun& run, double terminal) {
         known.advance(m.time - last), last = m.time;
         const SolidMeasurement& s = m.solids[0];
         sunk = double(sphere.center.y) - s.position.y;
-        aside = std::hypot(s.position.x - double(sphere.center.x), s.position.z - double(sphere.center.z));
+        aside = std::hypot(s.position.x - double(sphere.center.x),
+                           s.position.z - double(sphere.center.z));
         ours.x.push_back(m.time), ours.y.push_back(-s.velocity.y);
         theirs.x.push_back(m.time), theirs.y.push_back(known.speed);
     }
@@ -239,9 +266,10 @@ void runSettling(const Scene& scene, ValidationRun& run, double terminal) {
     const std::vector<double> smooth = runningMean(ours.x, ours.y, 0.05);
     const double fastest = *std::max_element(smooth.begin(), smooth.end());
     run.chart = {"", "t, s", "speed, m/s", {theirs, ours}};
-    run.metrics = {{"terminal speed", "%", 100 * (fastest / terminal - 1), targetAt(run.resolution, 40, 10)},
-                   {"sunk after 0.65 s", "%", 100 * (sunk / known.depth - 1), {}},
-                   {"gone aside / d", "", aside / known.diameter, targetAt(run.resolution, 40, 0.1)}};
+    run.metrics = {
+        {"terminal speed", "%", 100 * (fastest / terminal - 1), targetAt(run.resolution, 40, 10)},
+        {"sunk after 0.65 s", "%", 100 * (sunk / known.depth - 1), {}},
+        {"gone aside / d", "", aside / known.diameter, targetAt(run.resolution, 40, 0.1)}};
 }
 
 // --- C14 dam break with a box ---
@@ -257,8 +285,10 @@ void runKleefsman(const Scene& scene, ValidationRun& run, const std::string& dat
         sim.until(k * interval);
         t.push_back(sim.time());
         const std::vector<double> readings = probes.read(sim->particles());
-        for (const char* p : {"P1", "P3", "P5", "P7"}) ours[p].push_back(readings[probes.column(std::string(p) + ".pressure")]);
-        for (const char* h : {"H2", "H4"}) ours[h].push_back(readings[probes.column(std::string(h) + ".height")]);
+        for (const char* p : {"P1", "P3", "P5", "P7"})
+            ours[p].push_back(readings[probes.column(std::string(p) + ".pressure")]);
+        for (const char* h : {"H2", "H4"})
+            ours[h].push_back(readings[probes.column(std::string(h) + ".height")]);
     }
     const std::vector<double>& te = experiment.at("t_s");
     const bool judged = run.resolution >= 30;
@@ -267,8 +297,10 @@ void runKleefsman(const Scene& scene, ValidationRun& run, const std::string& dat
     for (const char* h : {"H2", "H4"}) {
         const std::vector<double>& measured = experiment.at(std::string(h) + "_m");
         double sum = 0;
-        for (size_t i = 0; i < t.size(); ++i) sum += std::abs(ours[h][i] - valueAt(te, measured, t[i])) / depth / double(t.size());
-        run.metrics.push_back({std::string("water height ") + h + ", mean error / H", "%", 100 * sum, target(8)});
+        for (size_t i = 0; i < t.size(); ++i)
+            sum += std::abs(ours[h][i] - valueAt(te, measured, t[i])) / depth / double(t.size());
+        run.metrics.push_back(
+            {std::string("water height ") + h + ", mean error / H", "%", 100 * sum, target(8)});
         run.chart.curves.push_back({h, t, ours[h], Curve::Line});
         run.chart.curves.push_back({std::string(h) + " measured", te, measured, Curve::Dashed});
     }
@@ -276,25 +308,37 @@ void runKleefsman(const Scene& scene, ValidationRun& run, const std::string& dat
         const bool first = p == std::string("P1");
         const std::vector<double>& measured = experiment.at(std::string(p) + "_Pa");
         const double late = arrivalOf(t, ours[p], 500) - arrivalOf(te, measured, 500);
-        const std::vector<double> smooth = runningMean(t, ours[p], 0.005), theirs = runningMean(te, measured, 0.005);
+        const std::vector<double> smooth = runningMean(t, ours[p], 0.005),
+                                  theirs = runningMean(te, measured, 0.005);
         auto peak = [](const std::vector<double>& at, const std::vector<double>& values) {
             double most = 0;
             for (size_t i = 0; i < at.size(); ++i)
                 if (at[i] > 0.39 && at[i] < 0.6) most = std::max(most, values[i]);
             return most;
         };
-        run.metrics.push_back({std::string("arrival at ") + p, "ms", 1000 * late, first ? target(30) : std::nullopt});
-        run.metrics.push_back({std::string("impulse at ") + p + ", 0.39 < t < 1.2 s", "%",
-                               100 * (integral(t, ours[p], 0.39, 1.2) / integral(te, measured, 0.39, 1.2) - 1), first ? target(15) : std::nullopt});
-        run.metrics.push_back({std::string("smoothed peak at ") + p, "%", 100 * (peak(t, smooth) / peak(te, theirs) - 1), {}});
+        run.metrics.push_back(
+            {std::string("arrival at ") + p, "ms", 1000 * late, first ? target(30) : std::nullopt});
+        run.metrics.push_back(
+            {std::string("impulse at ") + p + ", 0.39 < t < 1.2 s", "%",
+             100 * (integral(t, ours[p], 0.39, 1.2) / integral(te, measured, 0.39, 1.2) - 1),
+             first ? target(15) : std::nullopt});
+        run.metrics.push_back({std::string("smoothed peak at ") + p,
+                               "%",
+                               100 * (peak(t, smooth) / peak(te, theirs) - 1),
+                               {}});
         std::vector<double> scaled = smooth, scaledTheirs = theirs;
         for (auto* values : {&scaled, &scaledTheirs})
             for (double& v : *values) v /= 20000;
-        if (first) run.chart.curves.push_back({p, t, scaled, Curve::Line}), run.chart.curves.push_back({"P1 measured", te, scaledTheirs, Curve::Dashed});
+        if (first)
+            run.chart.curves.push_back({p, t, scaled, Curve::Line}),
+                run.chart.curves.push_back({"P1 measured", te, scaledTheirs, Curve::Dashed});
     }
     for (const char* p : {"P5", "P7"})
-        run.metrics.push_back({std::string("mean of ") + p + ", 1.2 < t < 2.5 s", "Pa off",
-                               meanOf(t, ours[p], 1.2, 2.5) - meanOf(te, experiment.at(std::string(p) + "_Pa"), 1.2, 2.5), {}});
+        run.metrics.push_back({std::string("mean of ") + p + ", 1.2 < t < 2.5 s",
+                               "Pa off",
+                               meanOf(t, ours[p], 1.2, 2.5) -
+                                   meanOf(te, experiment.at(std::string(p) + "_Pa"), 1.2, 2.5),
+                               {}});
 }
 
 }  // namespace spindrift

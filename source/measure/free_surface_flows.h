@@ -1,5 +1,6 @@
 #pragma once
-// Flows with a free surface whose answers are known: cases of `spindrift validate`. `data` is the folder of the reference files.
+// Flows with a free surface whose answers are known: cases of `spindrift validate`. `data` is the
+// folder of the reference files.
 #include "measure/validation.h"
 
 namespace spindrift {

@@ -6,8 +6,8 @@
 namespace spindrift {
 namespace {
 
-// The first unknown of the normal equations for five right-hand sides at once: the field's value. Where all neighbours lie in a
-// plane, a line or a point, the slopes across it are taken as 0.
+// The first unknown of the normal equations for five right-hand sides at once: the field's value.
+// Where all neighbours lie in a plane, a line or a point, the slopes across it are taken as 0.
 constexpr int N = 4, Sides = 5;
 struct Equations {
     double a[N][N] = {}, b[N][Sides] = {};
@@ -23,7 +23,8 @@ struct Equations {
             std::fill(out, out + Sides, 0.0);
             return;
         }
-        // About the neighbours' mean place the slopes' equations stand alone; then from the last slope to the first.
+        // About the neighbours' mean place the slopes' equations stand alone; then from the last
+        // slope to the first.
         for (int r = 1; r < N; ++r) eliminate(r, 0);
         for (int k = N - 1; k > 0 && order == Order::Linear; --k)
             if (a[k][k] > 1e-9 * a[0][0])
@@ -41,7 +42,8 @@ private:
 };
 
 // Where a point and its images are along an axis: those that particles in the box can be near to.
-std::vector<double> placesOf(double at, double radius, double low, double high, Surroundings::Beyond beyond) {
+std::vector<double> placesOf(double at, double radius, double low, double high,
+                             Surroundings::Beyond beyond) {
     std::vector<double> places{at};
     if (beyond == Surroundings::Nothing) return places;
     const bool mirror = beyond == Surroundings::Mirror;
@@ -54,7 +56,9 @@ std::vector<double> placesOf(double at, double radius, double low, double high, 
 
 PointsNear::PointsNear(const std::vector<Vec3d>& points, double radius, const Surroundings& s)
     : points_(points.size()), radius_(radius), cell_(radius) {
-    auto places = [&](Vec3d p, int k) { return placesOf(p[k], radius, s.low[k], s.high[k], s.beyond[k]); };
+    auto places = [&](Vec3d p, int k) {
+        return placesOf(p[k], radius, s.low[k], s.high[k], s.beyond[k]);
+    };
     for (size_t p = 0; p < points.size(); ++p)
         for (double x : places(points[p], 0))
             for (double y : places(points[p], 1))
@@ -63,10 +67,12 @@ PointsNear::PointsNear(const std::vector<Vec3d>& points, double radius, const Su
 }
 
 void PointsNear::makeCells() {
-    constexpr double MostCells = 4e6;   // cells are made larger before there are more
+    constexpr double MostCells = 4e6;  // cells are made larger before there are more
     Vec3d high = low_ = sites_[0].position;
     for (const Site& site : sites_)
-        for (int k = 0; k < 3; ++k) low_[k] = std::min(low_[k], site.position[k]), high[k] = std::max(high[k], site.position[k]);
+        for (int k = 0; k < 3; ++k)
+            low_[k] = std::min(low_[k], site.position[k]),
+            high[k] = std::max(high[k], site.position[k]);
     low_ = low_ - Vec3d{radius_, radius_, radius_};
     auto along = [&](int k) { return std::floor((high[k] + radius_ - low_[k]) / cell_) + 1; };
     while (along(0) * along(1) * along(2) > MostCells) cell_ *= 1.5;
@@ -76,7 +82,8 @@ void PointsNear::makeCells() {
     for (size_t c = 1; c < start_.size(); ++c) start_[c] += start_[c - 1];
     listed_.resize(size_t(start_.back()));
     std::vector<int> next = start_;
-    for (size_t s = 0; s < sites_.size(); ++s) forCellsOf(sites_[s], [&](size_t cell) { listed_[size_t(next[cell]++)] = int(s); });
+    for (size_t s = 0; s < sites_.size(); ++s)
+        forCellsOf(sites_[s], [&](size_t cell) { listed_[size_t(next[cell]++)] = int(s); });
 }
 
 // All cells that reach nearer than a radius to a site, and perhaps a few more.
@@ -84,11 +91,13 @@ template <class F> void PointsNear::forCellsOf(const Site& site, const F& f) con
     int first[3], last[3];
     for (int k = 0; k < 3; ++k) {
         const double at = (site.position[k] - low_[k]) / cell_, reach = radius_ / cell_ + 1e-9;
-        first[k] = std::max(int(std::floor(at - reach)), 0), last[k] = std::min(int(std::floor(at + reach)), cells_[k] - 1);
+        first[k] = std::max(int(std::floor(at - reach)), 0),
+        last[k] = std::min(int(std::floor(at + reach)), cells_[k] - 1);
     }
     for (int z = first[2]; z <= last[2]; ++z)
         for (int y = first[1]; y <= last[1]; ++y)
-            for (int x = first[0]; x <= last[0]; ++x) f((size_t(z) * size_t(cells_[1]) + size_t(y)) * size_t(cells_[0]) + size_t(x));
+            for (int x = first[0]; x <= last[0]; ++x)
+                f((size_t(z) * size_t(cells_[1]) + size_t(y)) * size_t(cells_[0]) + size_t(x));
 }
 
 int PointsNear::cellOf(Vec3d x) const {
@@ -101,14 +110,16 @@ int PointsNear::cellOf(Vec3d x) const {
     return (at[2] * cells_[1] + at[1]) * cells_[0] + at[0];
 }
 
-std::vector<Fields> interpolate(const std::vector<Particle>& particles, const PointsNear& points, Order order) {
+std::vector<Fields> interpolate(const std::vector<Particle>& particles, const PointsNear& points,
+                                Order order) {
     std::vector<Equations> equations(points.points());
     std::vector<Fields> out(points.points());
     for (const Particle& p : particles)
         points.visit(p.position, [&](int point, Vec3d r, double q) {
             ++out[size_t(point)].neighbours;
             const double basis[N] = {1, r.x, r.y, r.z};
-            const double values[Sides] = {p.velocity.x, p.velocity.y, p.velocity.z, p.pressure, p.density};
+            const double values[Sides] = {p.velocity.x, p.velocity.y, p.velocity.z, p.pressure,
+                                          p.density};
             equations[size_t(point)].add(basis, values, std::pow(1 - q, 4) * (1 + 4 * q));
         });
     for (size_t i = 0; i < out.size(); ++i) {
@@ -119,8 +130,8 @@ std::vector<Fields> interpolate(const std::vector<Particle>& particles, const Po
     return out;
 }
 
-std::vector<Fields> interpolate(const std::vector<Particle>& particles, const std::vector<Vec3d>& points, double radius,
-                                Order order) {
+std::vector<Fields> interpolate(const std::vector<Particle>& particles,
+                                const std::vector<Vec3d>& points, double radius, Order order) {
     return interpolate(particles, PointsNear(points, radius), order);
 }
 

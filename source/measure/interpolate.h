@@ -6,17 +6,23 @@
 
 namespace spindrift {
 
-struct Fields { Vec3d velocity; double pressure = 0, density = 0; int neighbours = 0; };   // m/s, Pa, kg/m³
+struct Fields {
+    Vec3d velocity;
+    double pressure = 0, density = 0;
+    int neighbours = 0;
+};  // m/s, Pa, kg/m³
 
-// What lies beyond the sides of a box, axis by axis: nothing that counts, the box again, or its mirror image.
+// What lies beyond the sides of a box, axis by axis: nothing that counts, the box again, or its
+// mirror image.
 struct Surroundings {
     enum Beyond { Nothing, Again, Mirror };
-    Vec3d low, high;   // m, world coordinates
+    Vec3d low, high;  // m, world coordinates
     Beyond beyond[3] = {Nothing, Nothing, Nothing};
 };
 
-// Beside which points a particle lies: cells as long as a radius know the points that a particle in them may be nearer to than that.
-// Made once for points that stay; looking one particle up costs a cell.
+// Beside which points a particle lies: cells as long as a radius know the points that a particle in
+// them may be nearer to than that. Made once for points that stay; looking one particle up costs a
+// cell.
 class PointsNear {
 public:
     // World coordinates, m.
@@ -36,23 +42,29 @@ public:
     size_t points() const { return points_; }
 
 private:
-    struct Site { Vec3d position; int point; };   // a point, or one of its images
-    int cellOf(Vec3d x) const;                    // -1 outside
+    struct Site {
+        Vec3d position;
+        int point;
+    };                          // a point, or one of its images
+    int cellOf(Vec3d x) const;  // -1 outside
     void makeCells();
     template <class F> void forCellsOf(const Site&, const F&) const;
 
     size_t points_;
-    double radius_, cell_;   // m
+    double radius_, cell_;  // m
     Vec3d low_;
     int cells_[3] = {0, 0, 0};
     std::vector<Site> sites_;
-    std::vector<int> start_, listed_;   // sites of cell c: listed_[start_[c]] ... listed_[start_[c + 1] - 1]
+    std::vector<int> start_,
+        listed_;  // sites of cell c: listed_[start_[c]] ... listed_[start_[c + 1] - 1]
 };
 
-// At each point, from the fluid particles nearer than the radius. Linear: moving least squares of first order, exact for
-// linear fields; with too few neighbours for a slope as Mean. Mean: their weighted mean (Shepard), never beyond their values: for
-// spray. Without neighbours zeros. Nothing is mirrored at walls.
+// At each point, from the fluid particles nearer than the radius. Linear: moving least squares of
+// first order, exact for linear fields; with too few neighbours for a slope as Mean. Mean: their
+// weighted mean (Shepard), never beyond their values: for spray. Without neighbours zeros. Nothing
+// is mirrored at walls.
 std::vector<Fields> interpolate(const std::vector<Particle>&, const PointsNear&, Order);
-std::vector<Fields> interpolate(const std::vector<Particle>&, const std::vector<Vec3d>& points, double radius, Order = Order::Linear);
+std::vector<Fields> interpolate(const std::vector<Particle>&, const std::vector<Vec3d>& points,
+                                double radius, Order = Order::Linear);
 
 }  // namespace spindrift

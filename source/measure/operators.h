@@ -4,7 +4,8 @@
 
 namespace spindrift {
 
-// In the scene of a Taylor-Green flow, whose formulation, jitter and state at the start are chosen here.
+// In the scene of a Taylor-Green flow, whose formulation, jitter and state at the start are chosen
+// here.
 void runOperators(const Scene&, ValidationRun&);
 
 }  // namespace spindrift

@@ -25,7 +25,8 @@ Vec3d placed(const Scene& scene, Vec3d at) {
 
 Surroundings surroundings(const Scene& scene, Surroundings::Beyond wall) {
     Surroundings s{toDouble(scene.domain.min), toDouble(scene.domain.max)};
-    for (int k = 0; k < scene.simulation.dimensions; ++k) s.beyond[k] = scene.domain.periodic(k) ? Surroundings::Again : wall;
+    for (int k = 0; k < scene.simulation.dimensions; ++k)
+        s.beyond[k] = scene.domain.periodic(k) ? Surroundings::Again : wall;
     return s;
 }
 
@@ -34,12 +35,15 @@ int faceOf(const Scene& scene, Vec3d at) {
     const double near = 1e-3 * scene.simulation.spacing;
     for (int k = 0; k < scene.simulation.dimensions; ++k) {
         const double low = scene.domain.min[k], high = scene.domain.max[k];
-        if (!scene.domain.periodic(k) && (std::abs(at[k] - low) < near || std::abs(at[k] - high) < near)) return k;
+        if (!scene.domain.periodic(k) &&
+            (std::abs(at[k] - low) < near || std::abs(at[k] - high) < near))
+            return k;
     }
     return -1;
 }
 
-// Midpoints of 3 x 3 (x 3) cells of the square or cube around a sensor, those in its disc or ball and in the domain.
+// Midpoints of 3 x 3 (x 3) cells of the square or cube around a sensor, those in its disc or ball
+// and in the domain.
 std::vector<Vec3d> sensor(const Scene& scene, Vec3d at, double radius) {
     if (radius == 0) return {at};
     std::vector<Vec3d> points;
@@ -47,7 +51,9 @@ std::vector<Vec3d> sensor(const Scene& scene, Vec3d at, double radius) {
     auto most = [&](int k) { return k == across || flat(scene, k) ? 0 : 1; };
     auto inside = [&](Vec3d p) {
         for (int k = 0; k < 3; ++k)
-            if (most(k) && !scene.domain.periodic(k) && (p[k] < scene.domain.min[k] || p[k] > scene.domain.max[k])) return false;
+            if (most(k) && !scene.domain.periodic(k) &&
+                (p[k] < scene.domain.min[k] || p[k] > scene.domain.max[k]))
+                return false;
         return true;
     };
     for (int z = -most(2); z <= most(2); ++z)
@@ -154,12 +160,16 @@ Probes::Probes(const Scene& scene) {
 }
 
 void Probes::addFielded(const Scene& scene, const Probe& probe) {
-    std::vector<Vec3d> points = sensor(scene, placed(scene, toDouble(probe.position)), probe.radius);
+    std::vector<Vec3d> points =
+        sensor(scene, placed(scene, toDouble(probe.position)), probe.radius);
     const size_t perReading = probe.kind == ProbeKind::Point ? points.size() : 1;
     if (probe.kind == ProbeKind::Line) points = pointsOf(scene, probe);
-    fielded_.push_back({PointsNear(points, supportRadius(scene), surroundings(scene, Surroundings::Nothing)), probe.order, perReading});
+    fielded_.push_back(
+        {PointsNear(points, supportRadius(scene), surroundings(scene, Surroundings::Nothing)),
+         probe.order, perReading});
     for (size_t k = 0; k < points.size() / perReading; ++k) {
-        const std::string name = probe.kind == ProbeKind::Line ? probe.name + "[" + std::to_string(k) + "]" : probe.name;
+        const std::string name =
+            probe.kind == ProbeKind::Line ? probe.name + "[" + std::to_string(k) + "]" : probe.name;
         columns_.push_back({name + ".pressure", "Pa"});
         columns_.push_back({name + ".density", "kg/m³"});
         for (const char* axis : AxisNames) columns_.push_back({name + ".velocity_" + axis, "m/s"});
@@ -171,17 +181,22 @@ void Probes::addGauge(const Scene& scene, const Probe& probe) {
     const double R = supportRadius(scene), low = scene.domain.min[k], high = scene.domain.max[k];
     const std::vector<Vec3d> points = pointsOf(scene, probe);
     const double volume = particleMass(scene) / scene.fluid.restDensity;
-    const double norm = d == 2 ? 7 / (std::numbers::pi * R * R) : 21 / (2 * std::numbers::pi * R * R * R);
-    gauges_.push_back({PointsNear(points, R, surroundings(scene, Surroundings::Mirror)), low, (high - low) / double(points.size() - 1), R, volume * norm});
+    const double norm =
+        d == 2 ? 7 / (std::numbers::pi * R * R) : 21 / (2 * std::numbers::pi * R * R * R);
+    gauges_.push_back({PointsNear(points, R, surroundings(scene, Surroundings::Mirror)), low,
+                       (high - low) / double(points.size() - 1), R, volume * norm});
 }
 
 double Probes::heightOf(const Gauge& gauge, const std::vector<Particle>& particles) {
     std::vector<double> filled(gauge.near.points());
     for (const Particle& p : particles)
-        gauge.near.visit(p.position, [&](int point, Vec3d, double q) { filled[size_t(point)] += gauge.share * wendland(q); });
+        gauge.near.visit(p.position, [&](int point, Vec3d, double q) {
+            filled[size_t(point)] += gauge.share * wendland(q);
+        });
     // Where the share crosses a half, on a straight line between two samples.
     auto crossing = [&](size_t i) {
-        return gauge.low + gauge.step * (double(i) + (0.5 - filled[i]) / (filled[i + 1] - filled[i]));
+        return gauge.low +
+               gauge.step * (double(i) + (0.5 - filled[i]) / (filled[i + 1] - filled[i]));
     };
     double height = gauge.low, begin = 0;
     for (size_t i = 0; i < filled.size(); ++i) {
@@ -196,8 +211,10 @@ double Probes::heightOf(const Gauge& gauge, const std::vector<Particle>& particl
 }
 
 size_t Probes::column(const std::string& name) const {
-    const auto at = std::find_if(columns_.begin(), columns_.end(), [&](const Column& c) { return c.name == name; });
-    if (at == columns_.end()) throw Error(Exit::Scene, "output.probes: none of them reads " + name + "; add it");
+    const auto at = std::find_if(columns_.begin(), columns_.end(),
+                                 [&](const Column& c) { return c.name == name; });
+    if (at == columns_.end())
+        throw Error(Exit::Scene, "output.probes: none of them reads " + name + "; add it");
     return size_t(at - columns_.begin());
 }
 
@@ -214,7 +231,9 @@ std::vector<double> Probes::read(const std::vector<Particle>& particles) const {
             const std::vector<Fields> fields = interpolate(particles, probe.near, probe.order);
             for (size_t i = 0; i < fields.size(); i += probe.perReading) {
                 const Fields f = mean(&fields[i], probe.perReading);
-                for (double value : {f.pressure, f.density, f.velocity.x, f.velocity.y, f.velocity.z}) values.push_back(value);
+                for (double value :
+                     {f.pressure, f.density, f.velocity.x, f.velocity.y, f.velocity.z})
+                    values.push_back(value);
             }
         }
     }
@@ -241,9 +260,9 @@ std::string Probes::hiddenBySolids(const Scene& scene, Simulation& simulation) c
             if (heightOf(own, simulation.particles()) > own.low) continue;
             what = "finds no water and goes through ";
         }
-        all += fmt::format("{}{} {}{}", all.empty() ? "" : "; ",
-                           named("output.probes", i, probe.name), what,
-                           named("solids", size_t(solid), scene.solids[size_t(solid)].name));
+        all +=
+            fmt::format("{}{} {}{}", all.empty() ? "" : "; ", named("output.probes", i, probe.name),
+                        what, named("solids", size_t(solid), scene.solids[size_t(solid)].name));
     }
     return all.empty() ? "" : all + ": no fluid can be read there; move one of the two";
 }

@@ -17,7 +17,11 @@ namespace spindrift {
 namespace {
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why) {
-    throw Error(Exit::Output, fmt::format("{}: can't go on with this series: {}; name another file, or move this one away", path, why));
+    throw Error(
+        Exit::Output,
+        fmt::format(
+            "{}: can't go on with this series: {}; name another file, or move this one away", path,
+            why));
 }
 
 std::vector<std::string> cellsOf(const std::string& line) {
@@ -35,7 +39,7 @@ Column columnOf(const std::string& cell) {
 }
 
 void readCsv(const std::string& text, SeriesTable& table) {
-    std::istringstream stream(text.substr(0, text.rfind('\n') + 1));   // whole lines only
+    std::istringstream stream(text.substr(0, text.rfind('\n') + 1));  // whole lines only
     std::string line;
     std::getline(stream, line);
     for (const std::string& cell : cellsOf(line)) table.columns.push_back(columnOf(cell));
@@ -48,7 +52,9 @@ void readCsv(const std::string& text, SeriesTable& table) {
         for (const std::string& cell : cellsOf(line)) {
             char* end = nullptr;
             row.push_back(std::strtod(cell.c_str(), &end));
-            if (cell.empty() || *end != 0) refuse(table.path, fmt::format("row {} has a value that is no number", table.rows.size()));
+            if (cell.empty() || *end != 0)
+                refuse(table.path,
+                       fmt::format("row {} has a value that is no number", table.rows.size()));
         }
     }
 }
@@ -56,12 +62,14 @@ void readCsv(const std::string& text, SeriesTable& table) {
 void readJson(const std::string& text, SeriesTable& table) {
     try {
         const auto json = nlohmann::json::parse(text);
-        for (const auto& c : json.at("columns")) table.columns.push_back({c.at("name"), c.at("unit")});
+        for (const auto& c : json.at("columns"))
+            table.columns.push_back({c.at("name"), c.at("unit")});
         for (const auto& r : json.value("remarks", nlohmann::json::array()))
             table.remarks.push_back({r.at("row"), r.at("text")});
         for (const auto& values : json.at("rows")) {
             std::vector<double>& row = table.rows.emplace_back();
-            for (const auto& value : values) row.push_back(value.is_null() ? std::nan("") : value.get<double>());
+            for (const auto& value : values)
+                row.push_back(value.is_null() ? std::nan("") : value.get<double>());
         }
     } catch (const nlohmann::json::exception&) { refuse(table.path, "it is no time series"); }
 }
@@ -85,7 +93,8 @@ void readHdf5(SeriesTable& table) {
 }  // namespace
 
 std::optional<size_t> find(const std::vector<Column>& columns, const std::string& name) {
-    const auto at = std::find_if(columns.begin(), columns.end(), [&](const Column& c) { return c.name == name; });
+    const auto at = std::find_if(columns.begin(), columns.end(),
+                                 [&](const Column& c) { return c.name == name; });
     return at == columns.end() ? std::nullopt : std::optional<size_t>(at - columns.begin());
 }
 
@@ -94,26 +103,35 @@ SeriesTable readSeries(const std::string& path) {
     std::ifstream stream(path, std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
     if (!stream) refuse(path, "it can't be read");
-    if (hdf5::isFile(path)) readHdf5(table);
-    else if (text.starts_with("{")) readJson(text, table);
-    else readCsv(text, table);
-    if (!find(table.columns, "time") || !find(table.columns, "step")) refuse(path, "it has no columns time and step");
+    if (hdf5::isFile(path))
+        readHdf5(table);
+    else if (text.starts_with("{"))
+        readJson(text, table);
+    else
+        readCsv(text, table);
+    if (!find(table.columns, "time") || !find(table.columns, "step"))
+        refuse(path, "it has no columns time and step");
     for (const std::vector<double>& row : table.rows)
         if (row.size() != table.columns.size()) refuse(path, "its rows are not of one length");
     return table;
 }
 
 SeriesTable rowsBefore(const Measurement& now, SeriesTable table) {
-    constexpr double Rounding = 1e-8;   // of numbers with nine digits
+    constexpr double Rounding = 1e-8;  // of numbers with nine digits
     const size_t time = *find(table.columns, "time"), step = *find(table.columns, "step");
-    const auto isBehind = [&](const std::vector<double>& row) { return row[step] > double(now.steps); };
+    const auto isBehind = [&](const std::vector<double>& row) {
+        return row[step] > double(now.steps);
+    };
     for (const std::vector<double>& row : table.rows)
-        if (isBehind(row) ? !(row[time] >= now.time * (1 - Rounding)) : !(row[time] <= now.time * (1 + Rounding)))
-            refuse(table.path, fmt::format("it is another run's, at step {:.0f} after {:.6g} s, but this one goes on from step {} after {:.6g} s",
+        if (isBehind(row) ? !(row[time] >= now.time * (1 - Rounding))
+                          : !(row[time] <= now.time * (1 + Rounding)))
+            refuse(table.path, fmt::format("it is another run's, at step {:.0f} after {:.6g} s, "
+                                           "but this one goes on from step {} after {:.6g} s",
                                            row[step], row[time], now.steps, now.time));
     std::erase_if(table.rows, isBehind);
     std::erase_if(table.remarks, [&](const SeriesRemark& r) { return r.row > table.rows.size(); });
-    if (!table.rows.empty() && table.rows.back()[step] == double(now.steps)) table.rows.back()[time] = now.time;   // with all digits
+    if (!table.rows.empty() && table.rows.back()[step] == double(now.steps))
+        table.rows.back()[time] = now.time;  // with all digits
     return table;
 }
 

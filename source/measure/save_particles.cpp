@@ -14,7 +14,9 @@ void saveParticles(const std::string& path, const std::vector<Particle>& particl
         table.positions.push_back(p.position), table.velocities.push_back(p.velocity);
         table.densities.push_back(p.density), table.pressures.push_back(p.pressure);
     }
-    replaceFile(path, [&](const std::string& temporary) { return writeParticles(temporary, path.ends_with(".h5"), table); });
+    replaceFile(path, [&](const std::string& temporary) {
+        return writeParticles(temporary, path.ends_with(".h5"), table);
+    });
 }
 
 std::vector<double> massesToSave(const Scene& scene, Simulation& simulation) {

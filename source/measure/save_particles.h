@@ -6,8 +6,9 @@
 
 namespace spindrift {
 
-// Particles as a table that a body of shape file can be: HDF5 when the path ends in .h5, else CSV; world coordinates, all digits, and their
-// masses, kg, in two dimensions kg/m, where they are given. Throws Error (Output).
+// Particles as a table that a body of shape file can be: HDF5 when the path ends in .h5, else CSV;
+// world coordinates, all digits, and their masses, kg, in two dimensions kg/m, where they are
+// given. Throws Error (Output).
 void saveParticles(const std::string& path, const std::vector<Particle>&,
                    const std::vector<double>& masses = {});
 

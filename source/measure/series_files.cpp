@@ -9,7 +9,8 @@ namespace spindrift {
 namespace {
 
 // Files of one run may be of different length, when one of them was asked for later than others.
-std::optional<SeriesTable> longestBefore(const Measurement& now, const std::vector<std::string>& paths) {
+std::optional<SeriesTable> longestBefore(const Measurement& now,
+                                         const std::vector<std::string>& paths) {
     std::optional<SeriesTable> longest;
     for (const std::string& path : paths) {
         if (path.empty() || isStream(path) || !std::filesystem::exists(path)) continue;
@@ -21,23 +22,27 @@ std::optional<SeriesTable> longestBefore(const Measurement& now, const std::vect
 
 }  // namespace
 
-SeriesFiles::SeriesFiles(const Output& output, std::vector<Column> more, const std::vector<PlanRow>& plan, const Measurement* goesOnFrom)
+SeriesFiles::SeriesFiles(const Output& output, std::vector<Column> more,
+                         const std::vector<PlanRow>& plan, const Measurement* goesOnFrom)
     : csv_(output.csv), json_(output.json), hdf5_(output.hdf5), series_(std::move(more), plan) {
     if (!goesOnFrom) return;
     const std::optional<SeriesTable> before = longestBefore(*goesOnFrom, {hdf5_, csv_, json_});
     if (!before || before->rows.empty()) return;
-    constexpr double Rounding = 1e-8;   // up, of the nine digits that a file has
+    constexpr double Rounding = 1e-8;  // up, of the nine digits that a file has
     series_.goOn(*goesOnFrom, *before);
     lastTime_ = series_.lastTime() * (1 + Rounding);
-    changed_ = true;   // the other files may be shorter
+    changed_ = true;  // the other files may be shorter
 }
 
-void SeriesFiles::add(const Measurement& m, const std::vector<PassTime>& passes, const std::vector<double>& more) {
+void SeriesFiles::add(const Measurement& m, const std::vector<PassTime>& passes,
+                      const std::vector<double>& more) {
     series_.add(m, passes, more);
     lastTime_ = m.time;
     changed_ = true;
-    if (csvFile_) csvFile_->append(series_.csvLine(series_.size() - 1));
-    else if (!csv_.empty()) csvFile_.emplace(csv_, series_.csv());
+    if (csvFile_)
+        csvFile_->append(series_.csvLine(series_.size() - 1));
+    else if (!csv_.empty())
+        csvFile_.emplace(csv_, series_.csv());
 }
 
 void SeriesFiles::remark(double time, const std::string& text) {
@@ -59,19 +64,23 @@ void SeriesFiles::dropAfter(double time) {
 }
 
 void SeriesFiles::finish() {
-    if (!csvFile_ && !csv_.empty() && series_.size() > 0) csvFile_.emplace(csv_, series_.csv());   // no row was left to be added
+    if (!csvFile_ && !csv_.empty() && series_.size() > 0)
+        csvFile_.emplace(csv_, series_.csv());  // no row was left to be added
     replace(true);
-    json_.clear(), hdf5_.clear();   // a stream gets them once
+    json_.clear(), hdf5_.clear();  // a stream gets them once
 }
 
 void SeriesFiles::replace(bool streamsToo) {
-    const auto isDue = [&](const std::string& path) { return !path.empty() && (isStream(path) ? streamsToo : changed_); };
+    const auto isDue = [&](const std::string& path) {
+        return !path.empty() && (isStream(path) ? streamsToo : changed_);
+    };
     const Clock::time_point start = Clock::now();
     if (isDue(json_)) writeText(json_, series_.json());
     if (isDue(hdf5_)) series_.writeHdf5(hdf5_);
     changed_ = false;
     const Clock::duration took = Clock::now() - start;
-    due_ = Clock::now() + std::max(std::min<Clock::duration>(20 * took, std::chrono::seconds(1)), 4 * took);
+    due_ = Clock::now() +
+           std::max(std::min<Clock::duration>(20 * took, std::chrono::seconds(1)), 4 * took);
 }
 
 }  // namespace spindrift

@@ -13,7 +13,8 @@ namespace spindrift {
 // Steps a simulation and keeps the time it takes, measurements left out.
 class Stepping {
 public:
-    Stepping(const Scene& scene, ValidationRun& run) : scene_(scene), simulation_(makeSimulation(scene)), run_(run) {
+    Stepping(const Scene& scene, ValidationRun& run)
+        : scene_(scene), simulation_(makeSimulation(scene)), run_(run) {
         run.cost.particles = simulation_->fluidCount(), run.cost.walls = simulation_->wallCount();
     }
     Simulation& operator*() { return *simulation_; }
@@ -23,7 +24,8 @@ public:
         const auto start = std::chrono::steady_clock::now();
         simulation_->step(count);
         simulation_->wait();
-        run_.cost.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        run_.cost.seconds +=
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         const Measurement m = simulation_->measure();
         run_.diverged = run_.diverged || !divergence(scene_, m).empty();
         run_.cost.steps = m.steps;

@@ -15,15 +15,19 @@
 namespace spindrift {
 namespace {
 
-// What compressed fluid gives back, J: of p = k ((rho/rho0)^gamma - 1), where that is not cut off at 0. The classic formulation's
-// pressure has none.
+// What compressed fluid gives back, J: of p = k ((rho/rho0)^gamma - 1), where that is not cut off
+// at 0. The classic formulation's pressure has none.
 double internalEnergy(const Scene& scene, double sound, Simulation& simulation) {
     if (scene.simulation.formulation == Formulation::Classic) return 0;
-    const int gamma = scene.fluid.equationOfState == EquationOfState::Linear ? 1 : scene.fluid.gamma;
+    const int gamma =
+        scene.fluid.equationOfState == EquationOfState::Linear ? 1 : scene.fluid.gamma;
     const std::vector<uint16_t> bodies = simulation.state().particles.bodies;
     double sum = 0;
     for (const Particle& p : simulation.particles()) {
-        const double r = p.density / (bodies.empty() ? scene.fluid.restDensity : restDensity(scene, scene.fluid.bodies[bodies[size_t(p.id)]]));
+        const double r =
+            p.density / (bodies.empty()
+                             ? scene.fluid.restDensity
+                             : restDensity(scene, scene.fluid.bodies[bodies[size_t(p.id)]]));
         if (r <= 0 || (r < 1 && !carriesDensity(scene))) continue;
         sum += (gamma == 1 ? std::log(r) : (std::pow(r, gamma - 1) - 1) / (gamma - 1)) + 1 / r - 1;
     }
@@ -35,7 +39,9 @@ double massOf(const Scene& scene, Simulation& simulation) {
     const std::vector<uint16_t> bodies = simulation.state().particles.bodies;
     if (bodies.empty()) return particleMass(scene) * simulation.fluidCount();
     double mass = 0;
-    for (const uint16_t body : bodies) mass += particleMass(scene) * restDensity(scene, scene.fluid.bodies[body]) / scene.fluid.restDensity;
+    for (const uint16_t body : bodies)
+        mass += particleMass(scene) * restDensity(scene, scene.fluid.bodies[body]) /
+                scene.fluid.restDensity;
     return mass;
 }
 
@@ -48,10 +54,13 @@ struct Energy {
     double start = total(simulation.measure()) + unseen();
     double scale = scaleOf(simulation.measure());
 
-    double total(const Measurement& m) { return m.kineticEnergy + m.potentialEnergy + internalEnergy(scene, sound, simulation); }
-    // What the sums below don't see at the start: a particle on a wall is pushed off to where walls carry it, half a spacing; a squeezed wall
-    // pushes as its fluid does; forces are a few per cent stronger than the slope of the internal energy, as gradients are exact on the
-    // lattice and its density sum is not.
+    double total(const Measurement& m) {
+        return m.kineticEnergy + m.potentialEnergy + internalEnergy(scene, sound, simulation);
+    }
+    // What the sums below don't see at the start: a particle on a wall is pushed off to where walls
+    // carry it, half a spacing; a squeezed wall pushes as its fluid does; forces are a few per cent
+    // stronger than the slope of the internal energy, as gradients are exact on the lattice and its
+    // density sum is not.
     double unseen() {
         const double squeezed = simulation.wallCount() > 0 ? 1 : 0.05;
         return M * length(toDouble(scene.simulation.gravity)) * scene.simulation.spacing / 2 +
@@ -59,9 +68,11 @@ struct Energy {
     }
     double gain(const Measurement& m) { return (total(m) - start) / scale; }
     double scaleOf(const Measurement& m) {
-        const double reach = length(toDouble(scene.domain.max - scene.domain.min)), pull = scene.simulation.centralRate * reach;
+        const double reach = length(toDouble(scene.domain.max - scene.domain.min)),
+                     pull = scene.simulation.centralRate * reach;
         return m.kineticEnergy + internalEnergy(scene, sound, simulation) +
-               M * (length(toDouble(scene.simulation.gravity)) * reach + pull * pull / 2 + std::pow(sound / 50, 2) / 2);
+               M * (length(toDouble(scene.simulation.gravity)) * reach + pull * pull / 2 +
+                    std::pow(sound / 50, 2) / 2);
     }
 };
 
@@ -69,9 +80,11 @@ struct Energy {
 std::string wrong(const StressCase& c, const Measurement& m, double gain) {
     const Scene& s = c.scene;
     if (!m.finite) return "values that are no numbers";
-    if (c.energyIsConserved && gain > 0.01) return fmt::format("{:.1f} % of energy from nothing", 100 * gain);
+    if (c.energyIsConserved && gain > 0.01)
+        return fmt::format("{:.1f} % of energy from nothing", 100 * gain);
     // A thin splash compressed to twice its density is no fluid any more.
-    if (m.maxDensityError > 1) return fmt::format("density {:.1f} times that at rest", 1 + m.maxDensityError);
+    if (m.maxDensityError > 1)
+        return fmt::format("density {:.1f} times that at rest", 1 + m.maxDensityError);
     if (m.meanDensity < 0.02 * s.fluid.restDensity) return "hardly any density left";
     return "";
 }
@@ -79,7 +92,8 @@ std::string wrong(const StressCase& c, const Measurement& m, double gain) {
 std::string outside(const Scene& s, Simulation& simulation) {
     for (const Particle& p : simulation.particles())
         for (int k = 0; k < 3; ++k) {
-            const double size = s.domain.max[k] - s.domain.min[k], slack = 1e-5 * (size + std::abs(s.domain.max[k]));
+            const double size = s.domain.max[k] - s.domain.min[k],
+                         slack = 1e-5 * (size + std::abs(s.domain.max[k]));
             if (p.position[k] < s.domain.min[k] - slack || p.position[k] > s.domain.max[k] + slack)
                 return fmt::format("particle {} left the box", p.id);
         }
@@ -128,7 +142,8 @@ Scene box(const char* formulation, const std::vector<std::string>& knobs) {
     return s;
 }
 
-const std::string Ball = R"(fluid.bodies=[{"shape":"sphere","center":[0.5,0.5,0.5],"radius":0.25,"velocity":[)";
+const std::string Ball =
+    R"(fluid.bodies=[{"shape":"sphere","center":[0.5,0.5,0.5],"radius":0.25,"velocity":[)";
 std::string ball(double down) { return Ball + fmt::format("0,{},0]}}]", -down); }
 
 // In the middle of the box.
@@ -146,45 +161,68 @@ void tilt(Simulation&, Scene& scene, int step) {
 }
 void stirMadly(Simulation& simulation, Scene& scene, int step) {
     const float angle = float(step);
-    simulation.stir({scene.domain.min + Vec3{0.5f, 0.2f, 0.5f}, 0.4f, 20.0f * Vec3{std::cos(angle), std::sin(2 * angle), std::sin(angle)}});
+    simulation.stir({scene.domain.min + Vec3{0.5f, 0.2f, 0.5f}, 0.4f,
+                     20.0f * Vec3{std::cos(angle), std::sin(2 * angle), std::sin(angle)}});
 }
 
 // For formulations with free surfaces.
 void addViolent(const char* f, TimeMode mode, std::vector<StressCase>& out) {
-    auto add = [&](const char* name, int steps, const std::vector<std::string>& knobs) -> StressCase& {
-        out.push_back({fmt::format("{}{}: {}", f, mode == TimeMode::Local ? ", local steps" : "", name), box(f, knobs), steps, {}, {}, true});
+    auto add = [&](const char* name, int steps,
+                   const std::vector<std::string>& knobs) -> StressCase& {
+        out.push_back(
+            {fmt::format("{}{}: {}", f, mode == TimeMode::Local ? ", local steps" : "", name),
+             box(f, knobs),
+             steps,
+             {},
+             {},
+             true});
         out.back().scene.time.mode = mode;
         return out.back();
     };
     const std::string pool = R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[1,0.4,1]}])";
     add("impact at 10 m/s", 600, {ball(10)});
     add("impact at 100 m/s", 600, {ball(100)});
-    add("thin jet", 600, {R"(fluid.bodies=[{"shape":"cylinder","center":[0.5,0.6,0.5],"radius":0.08,"height":0.7,"velocity":[0,-5,0]}])"});
-    add("sheet one particle thick", 400, {R"(fluid.bodies=[{"shape":"block","min":[0.1,0.5,0.1],"max":[0.9,0.55,0.9]}])"});
-    add("one particle", 400, {R"(fluid.bodies=[{"shape":"block","min":[0.5,0.5,0.5],"max":[0.55,0.55,0.55]}])"});
-    add("two particles at one point", 400, {}).start = [](const Scene& s) { return placed(s, {{0.5f, 0.5f, 0.5f}, {0.5f, 0.5f, 0.5f}}); };
+    add("thin jet", 600,
+        {R"(fluid.bodies=[{"shape":"cylinder","center":[0.5,0.6,0.5],"radius":0.08,"height":0.7,"velocity":[0,-5,0]}])"});
+    add("sheet one particle thick", 400,
+        {R"(fluid.bodies=[{"shape":"block","min":[0.1,0.5,0.1],"max":[0.9,0.55,0.9]}])"});
+    add("one particle", 400,
+        {R"(fluid.bodies=[{"shape":"block","min":[0.5,0.5,0.5],"max":[0.55,0.55,0.55]}])"});
+    add("two particles at one point", 400, {}).start = [](const Scene& s) {
+        return placed(s, {{0.5f, 0.5f, 0.5f}, {0.5f, 0.5f, 0.5f}});
+    };
     StressCase& onWalls = add("particles on the walls", 400, {});
     onWalls.start = [](const Scene& s) {
-        return placed(s, {{0, 0, 0}, {1, 1, 1}, {0, 0.5f, 0.5f}, {0.5f, 0, 0.5f}, {0.5f, 0.5f, 1}, {1, 0, 0.2f}});
+        return placed(s, {{0, 0, 0},
+                          {1, 1, 1},
+                          {0, 0.5f, 0.5f},
+                          {0.5f, 0, 0.5f},
+                          {0.5f, 0.5f, 1},
+                          {1, 0, 0.2f}});
     };
-    onWalls.energyIsConserved = false;   // they start where walls push most, in corners from three sides
-    add("overlapping bodies", 400, {R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.6,0.5,0.6]},{"shape":"sphere","center":[0.5,0.5,0.5],"radius":0.3}])"});
+    onWalls.energyIsConserved =
+        false;  // they start where walls push most, in corners from three sides
+    add("overlapping bodies", 400,
+        {R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.6,0.5,0.6]},{"shape":"sphere","center":[0.5,0.5,0.5],"radius":0.3}])"});
     add("reflecting walls", 600, {ball(5), "walls.kind=reflect"});
     StressCase& tilted = add("gravity tilted and turned", 1600, {pool});
     tilted.disturb = tilt, tilted.energyIsConserved = false;
     add("viscosity 1000 times water's, and more", 400, {pool, "fluid.viscosity=100"});
-    const bool local = mode == TimeMode::Local;   // a step of the whole is many of single particles
+    const bool local = mode == TimeMode::Local;  // a step of the whole is many of single particles
     StressCase& stirred = add("stirred like mad", local ? 300 : 1000, {pool});
     stirred.disturb = stirMadly, stirred.energyIsConserved = false;
-    add("10 km from the origin", local ? 200 : 600, {"domain.min=9000,9000,9000", "domain.max=9001,9001,9001",
-                                       R"(fluid.bodies=[{"shape":"block","min":[9000,9000,9000],"max":[9000.5,9000.5,9001]}])"});
-    add("two dimensions", 1000, {"simulation.dimensions=2", "simulation.spacing=0.02",
-                                 R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.4,0.8,1]}])"});
+    add("10 km from the origin", local ? 200 : 600,
+        {"domain.min=9000,9000,9000", "domain.max=9001,9001,9001",
+         R"(fluid.bodies=[{"shape":"block","min":[9000,9000,9000],"max":[9000.5,9000.5,9001]}])"});
+    add("two dimensions", 1000,
+        {"simulation.dimensions=2", "simulation.spacing=0.02",
+         R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.4,0.8,1]}])"});
 }
 
 }  // namespace
 
-StressCase boxCase(const std::string& formulation, const std::vector<std::string>& knobs, int steps) {
+StressCase boxCase(const std::string& formulation, const std::vector<std::string>& knobs,
+                   int steps) {
     return {formulation, box(formulation.c_str(), knobs), steps, {}, {}, true};
 }
 
@@ -192,30 +230,67 @@ std::vector<StressCase> tortures(bool full) {
     std::vector<StressCase> out;
     for (const char* f : {"wcsph", "delta_sph", "delta_plus"}) addViolent(f, TimeMode::Cfl, out);
     for (const char* f : {"wcsph", "delta_sph"}) addViolent(f, TimeMode::Local, out);
-    const std::vector<std::string> tv{"simulation.dimensions=2", "simulation.spacing=0.03", "simulation.gravity=0,0,0", "fluid.rest_density=1",
-                                      "fluid.equation_of_state=linear", "domain.max=0.99,0.99,1",
-                                      R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.99,0.99,1]}])"};
+    const std::vector<std::string> tv{
+        "simulation.dimensions=2",
+        "simulation.spacing=0.03",
+        "simulation.gravity=0,0,0",
+        "fluid.rest_density=1",
+        "fluid.equation_of_state=linear",
+        "domain.max=0.99,0.99,1",
+        R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.99,0.99,1]}])"};
     auto addFilled = [&](const char* name, std::vector<std::string> knobs) -> StressCase& {
         std::vector<std::string> all = tv;
         all.insert(all.end(), knobs.begin(), knobs.end());
-        out.push_back({std::string("transport_velocity: ") + name, box("transport_velocity", all), 2000, {}, {}, true});
+        out.push_back({std::string("transport_velocity: ") + name,
+                       box("transport_velocity", all),
+                       2000,
+                       {},
+                       {},
+                       true});
         return out.back();
     };
-    addFilled("vortices between walls, Re 1000", {R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.99,0.99,1],"velocity":[1,0,0],"field":"taylor_green"}])"});
-    addFilled("cavity, Re 1e5", {"walls.moving_face=y_max", "walls.velocity=1,0,0", "fluid.viscosity=1e-5"}).energyIsConserved = false;
-    addFilled("cavity, lid at 100 m/s", {"walls.moving_face=y_max", "walls.velocity=100,0,0", "fluid.viscosity=0.1"}).energyIsConserved = false;
+    addFilled(
+        "vortices between walls, Re 1000",
+        {R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.99,0.99,1],"velocity":[1,0,0],"field":"taylor_green"}])"});
+    addFilled("cavity, Re 1e5",
+              {"walls.moving_face=y_max", "walls.velocity=1,0,0", "fluid.viscosity=1e-5"})
+        .energyIsConserved = false;
+    addFilled("cavity, lid at 100 m/s",
+              {"walls.moving_face=y_max", "walls.velocity=100,0,0", "fluid.viscosity=0.1"})
+        .energyIsConserved = false;
     addFilled("start with half a spacing of disorder", {"simulation.jitter=0.5"});
-    // The original's boundary particles weigh what no density says, so that an impact on them gains energy (1.4 % here), which then stays:
-    // finite, in the box and no denser is all that is asked of it.
-    out.push_back({"classic: viscosity 0.5, which gains energy at impact",
-                   box("classic", {R"(fluid.bodies=[{"shape":"block","min":[0.1,0.3,0.1],"max":[0.6,0.9,0.6]}])", "fluid.viscosity=0.5",
-                                   "simulation.kernel=cubic_spline", "simulation.support=2", "time.mode=fixed", "time.step=0.001"}),
-                   1000, {}, {}, false});
+    // The original's boundary particles weigh what no density says, so that an impact on them gains
+    // energy (1.4 % here), which then stays: finite, in the box and no denser is all that is asked
+    // of it.
+    out.push_back(
+        {"classic: viscosity 0.5, which gains energy at impact",
+         box("classic",
+             {R"(fluid.bodies=[{"shape":"block","min":[0.1,0.3,0.1],"max":[0.6,0.9,0.6]}])",
+              "fluid.viscosity=0.5", "simulation.kernel=cubic_spline", "simulation.support=2",
+              "time.mode=fixed", "time.step=0.001"}),
+         1000,
+         {},
+         {},
+         false});
     if (full) {
         // Few enough particles that threads would only wait for each other.
-        out.push_back({"a million steps of a still pool", box("wcsph", {R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.6,0.3,1]}])", "domain.max=0.6,0.5,1", "simulation.spacing=0.025",
-                                                                       "simulation.dimensions=2", "compute.threads=1"}), 1'000'000, {}, {}, true});
-        out.push_back({"three million particles", box("wcsph", {"simulation.spacing=0.0055", R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.5,1,1]}])"}), 50, {}, {}, true});
+        out.push_back(
+            {"a million steps of a still pool",
+             box("wcsph", {R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.6,0.3,1]}])",
+                           "domain.max=0.6,0.5,1", "simulation.spacing=0.025",
+                           "simulation.dimensions=2", "compute.threads=1"}),
+             1'000'000,
+             {},
+             {},
+             true});
+        out.push_back(
+            {"three million particles",
+             box("wcsph", {"simulation.spacing=0.0055",
+                           R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.5,1,1]}])"}),
+             50,
+             {},
+             {},
+             true});
     }
     return out;
 }
@@ -230,14 +305,16 @@ struct Dice {
     bool oneIn(int n) { return random() % uint64_t(n) == 0; }
 };
 
-// One scene in six is full to the walls and has the formulation for that; knobs that seldom matter. By dice of their own, so that the
-// other scenes are those that these seeds have always had.
+// One scene in six is full to the walls and has the formulation for that; knobs that seldom matter.
+// By dice of their own, so that the other scenes are those that these seeds have always had.
 void turnRareKnobs(Scene& s, uint64_t seed) {
     Dice dice{std::mt19937_64(seed + 0x9e3779b97f4a7c15u)};
     if (dice.oneIn(4)) s.fluid.gamma = 1 + int(dice.random() % 7);
     if (dice.oneIn(4)) s.fluid.densityDiffusion = dice.between(0.02, 0.2);
     if (dice.oneIn(4)) s.time.cfl = dice.between(0.1, 0.4);
-    if (dice.oneIn(6)) s.simulation.centralRate = dice.between(0.1, 1) * std::sqrt(9.81f / length(s.domain.max - s.domain.min));
+    if (dice.oneIn(6))
+        s.simulation.centralRate =
+            dice.between(0.1, 1) * std::sqrt(9.81f / length(s.domain.max - s.domain.min));
     if (dice.oneIn(10)) s.compute.precision = Precision::Double;
     if (!dice.oneIn(6)) return;
     s.simulation.formulation = Formulation::TransportVelocity;
@@ -247,12 +324,15 @@ void turnRareKnobs(Scene& s, uint64_t seed) {
     s.fluid.equationOfState = EquationOfState::Linear;
     s.fluid.shifting = dice.between(0.5, 2);
     Vec3 size = s.domain.max - s.domain.min;
-    for (int k = 0; k < s.simulation.dimensions; ++k) size[k] = std::round(size[k] / s.simulation.spacing) * s.simulation.spacing;
+    for (int k = 0; k < s.simulation.dimensions; ++k)
+        size[k] = std::round(size[k] / s.simulation.spacing) * s.simulation.spacing;
     s.domain.max = s.domain.min + size;
     Body all = s.fluid.bodies[0];
     all.shape = Shape::Block, all.min = s.domain.min, all.max = s.domain.max;
     if (dice.oneIn(2)) all.field = Field::TaylorGreen;
-    if (dice.oneIn(2)) s.walls.movingFace = Face::YMax, s.walls.velocity = {all.velocity.x, 0, 0}, all.velocity = {0, 0, 0};
+    if (dice.oneIn(2))
+        s.walls.movingFace = Face::YMax, s.walls.velocity = {all.velocity.x, 0, 0},
+        all.velocity = {0, 0, 0};
     s.fluid.bodies = {all};
 }
 
@@ -260,56 +340,75 @@ void turnRareKnobs(Scene& s, uint64_t seed) {
 void turnLocal(Scene& s, uint64_t seed) {
     Dice dice{std::mt19937_64(seed + 0xc2b2ae3d27d4eb4fu)};
     const float restSpeed = dice.oneIn(2) ? dice.logarithmic(1e-5, 1e-2) : s.time.restSpeed;
-    if (!dice.oneIn(3) || shiftsParticles(s) || s.time.mode != TimeMode::Cfl || s.time.integrator != Integrator::SymplecticEuler) return;
+    if (!dice.oneIn(3) || shiftsParticles(s) || s.time.mode != TimeMode::Cfl ||
+        s.time.integrator != Integrator::SymplecticEuler)
+        return;
     s.time.mode = TimeMode::Local, s.time.restSpeed = restSpeed;
 }
 
-// One in three is of several fluids, and one in three has forces that are rare. Whether energy is kept with them.
+// One in three is of several fluids, and one in three has forces that are rare. Whether energy is
+// kept with them.
 bool turnFluids(Scene& s, uint64_t seed) {
     Dice dice{std::mt19937_64(seed + 0x165667b19e3779f9u)};
     Fluid& f = s.fluid;
-    const bool summed = s.simulation.formulation == Formulation::Wcsph, carried = s.simulation.formulation == Formulation::DeltaSph;
+    const bool summed = s.simulation.formulation == Formulation::Wcsph,
+               carried = s.simulation.formulation == Formulation::DeltaSph;
     if (dice.oneIn(3) && (summed || carried))
         for (Body& body : f.bodies) {
             body.restDensity = f.restDensity * dice.logarithmic(0.2, 5);
-            if (dice.oneIn(2)) body.viscosity = dice.oneIn(4) ? 0 : body.restDensity * dice.logarithmic(1e-6, 1e-1);
+            if (dice.oneIn(2))
+                body.viscosity =
+                    dice.oneIn(4) ? 0 : body.restDensity * dice.logarithmic(1e-6, 1e-1);
         }
     // Which Mueller's kernels don't bear.
     const bool mayMeet = carried && s.walls.kind == WallKind::Reflect;
     if (dice.oneIn(8) && !mayMeet) s.simulation.kernel = Kernel::Mueller;
     if (!dice.oneIn(3) || s.simulation.formulation > Formulation::DeltaPlus) return true;
-    const float size = length(s.domain.max - s.domain.min), rate = std::sqrt(9.81f / size);   // 1/s
+    const float size = length(s.domain.max - s.domain.min), rate = std::sqrt(9.81f / size);  // 1/s
     if (dice.oneIn(2)) f.velocityTransfer = rate * dice.logarithmic(0.1, 100);
     if (dice.oneIn(2)) f.dissipation = std::min(rate * dice.logarithmic(0.01, 10), 100.0f);
     if (dice.oneIn(3)) f.buoyancy = dice.between(0, 3);
-    if (dice.oneIn(2) && summed) f.airDensity = std::min(f.restDensity * dice.logarithmic(1e-4, 1e-2), 100.0f), f.wind = {dice.between(-3, 3), 0, 0};
-    if (dice.oneIn(2) && !summed && !carried) f.surfaceTension = f.restDensity * 9.81f * s.simulation.spacing * s.simulation.spacing * dice.logarithmic(0.1, 100);
+    if (dice.oneIn(2) && summed)
+        f.airDensity = std::min(f.restDensity * dice.logarithmic(1e-4, 1e-2), 100.0f),
+        f.wind = {dice.between(-3, 3), 0, 0};
+    if (dice.oneIn(2) && !summed && !carried)
+        f.surfaceTension = f.restDensity * 9.81f * s.simulation.spacing * s.simulation.spacing *
+                           dice.logarithmic(0.1, 100);
     if (dice.oneIn(4) && summed && !isMixture(s)) s.simulation.pressureForm = PressureForm::Mean;
-    return f.buoyancy == 0 && f.airDensity == 0 && f.surfaceTension == 0 && s.simulation.pressureForm == PressureForm::Squares;
+    return f.buoyancy == 0 && f.airDensity == 0 && f.surfaceTension == 0 &&
+           s.simulation.pressureForm == PressureForm::Squares;
 }
 
-// One in four has solids that float, one in four elastic objects, where that makes sense. Whether there are any: they have energy that nobody counts.
+// One in four has solids that float, one in four elastic objects, where that makes sense. Whether
+// there are any: they have energy that nobody counts.
 bool turnThings(Scene& s, uint64_t seed) {
     Dice dice{std::mt19937_64(seed + 0x2545f4914f6cdd1du)};
     const Scene without = s;
     const Vec3 size = s.domain.max - s.domain.min;
-    const float dx = s.simulation.spacing, fall = std::sqrt(9.81f * length(size));   // m/s
+    const float dx = s.simulation.spacing, fall = std::sqrt(9.81f * length(size));  // m/s
     const bool flat = s.simulation.dimensions == 2;
     auto place = [&](Vec3& low, Vec3& high) {
         for (int k = 0; k < 3; ++k) {
             const float extent = std::min(dx * dice.between(2, 10), 0.6f * size[k]);
-            low[k] = s.domain.min[k] + dice.between(0, 1) * (size[k] - extent), high[k] = low[k] + extent;
+            low[k] = s.domain.min[k] + dice.between(0, 1) * (size[k] - extent),
+            high[k] = low[k] + extent;
         }
     };
-    auto speed = [&] { return Vec3{dice.between(-1, 1) * fall, dice.between(-1, 1) * fall, flat ? 0 : dice.between(-1, 1) * fall}; };
+    auto speed = [&] {
+        return Vec3{dice.between(-1, 1) * fall, dice.between(-1, 1) * fall,
+                    flat ? 0 : dice.between(-1, 1) * fall};
+    };
     for (int n = dice.oneIn(4) ? 1 + int(dice.random() % 3) : 0; n > 0; --n) {
         Solid solid;
         solid.shape = Shape(dice.random() % 4);
         place(solid.min, solid.max);
-        solid.center = 0.5f * (solid.min + solid.max), solid.radius = 0.5f * (solid.max.x - solid.min.x), solid.height = solid.max.y - solid.min.y;
+        solid.center = 0.5f * (solid.min + solid.max),
+        solid.radius = 0.5f * (solid.max.x - solid.min.x), solid.height = solid.max.y - solid.min.y;
         solid.axis = flat ? Axis::Z : Axis(dice.random() % 3);
-        solid.density = s.fluid.restDensity * dice.logarithmic(0.1, 10), solid.friction = dice.between(0, 1);
-        if (dice.oneIn(2)) solid.velocity = speed(), solid.spin = dice.between(-360, 360) * fall / length(size);
+        solid.density = s.fluid.restDensity * dice.logarithmic(0.1, 10),
+        solid.friction = dice.between(0, 1);
+        if (dice.oneIn(2))
+            solid.velocity = speed(), solid.spin = dice.between(-360, 360) * fall / length(size);
         s.solids.push_back(solid);
     }
     for (int n = dice.oneIn(4) ? 1 + int(dice.random() % 2) : 0; n > 0; --n) {
@@ -317,14 +416,20 @@ bool turnThings(Scene& s, uint64_t seed) {
         object.shape = ObjectShape(dice.random() % 3);
         place(object.min, object.max);
         if (object.shape == ObjectShape::Sheet) object.max.y = object.min.y;
-        object.center = 0.5f * (object.min + object.max), object.radius = 0.5f * (object.max.x - object.min.x), object.height = object.max.z - object.min.z;
+        object.center = 0.5f * (object.min + object.max),
+        object.radius = 0.5f * (object.max.x - object.min.x),
+        object.height = object.max.z - object.min.z;
         object.axis = flat ? Axis::Z : Axis(dice.random() % 3);
-        object.spacing = dx * dice.between(0.5, 2), object.thickness = dx * dice.logarithmic(0.1, 2);
+        object.spacing = dx * dice.between(0.5, 2),
+        object.thickness = dx * dice.logarithmic(0.1, 2);
         object.density = s.fluid.restDensity * dice.logarithmic(0.2, 5);
         object.youngsModulus = object.density * fall * fall * dice.logarithmic(1, 1000);
-        object.damping = dice.between(0, 0.5), object.breakingStrain = dice.oneIn(2) ? dice.logarithmic(0.01, 1) : 0;
+        object.damping = dice.between(0, 0.5),
+        object.breakingStrain = dice.oneIn(2) ? dice.logarithmic(0.01, 1) : 0;
         if (dice.oneIn(2)) object.velocity = speed();
-        if (dice.oneIn(3)) s.grips.push_back({object.min, object.center, dice.oneIn(2) ? 0.2f * speed() : Vec3{}, {}});
+        if (dice.oneIn(3))
+            s.grips.push_back(
+                {object.min, object.center, dice.oneIn(2) ? 0.2f * speed() : Vec3{}, {}});
         s.objects.push_back(object);
     }
     if (s.solids.empty() && s.objects.empty()) return false;
@@ -348,21 +453,26 @@ StressCase randomCase(uint64_t seed) {
         s.name = fmt::format("random {}", seed);
         s.compute.backend = Backend::Cpu;
         s.simulation.dimensions = oneIn(3) ? 2 : 3;
-        s.simulation.formulation = Formulation(random() % 3);   // those with free surfaces
+        s.simulation.formulation = Formulation(random() % 3);  // those with free surfaces
         s.simulation.kernel = oneIn(4) ? Kernel::CubicSpline : Kernel::WendlandC2;
-        const double scale = logarithmic(0.01, 10);   // m
+        const double scale = logarithmic(0.01, 10);  // m
         const Vec3 size{between(0.6, 1.6), between(0.6, 1.6), between(0.6, 1.6)};
-        s.domain.min = oneIn(4) ? Vec3{between(-100, 100), between(-100, 100), between(-100, 100)} : Vec3{0, 0, 0};
+        s.domain.min = oneIn(4) ? Vec3{between(-100, 100), between(-100, 100), between(-100, 100)}
+                                : Vec3{0, 0, 0};
         s.domain.max = s.domain.min + float(scale) * size;
-        s.simulation.spacing = float(scale) * (s.simulation.dimensions == 2 ? between(0.015, 0.05) : between(0.05, 0.1));
+        s.simulation.spacing = float(scale) * (s.simulation.dimensions == 2 ? between(0.015, 0.05)
+                                                                            : between(0.05, 0.1));
         s.simulation.support = between(2, 3.2);
         const float g = oneIn(5) ? 0 : between(1, 30);
-        s.simulation.gravity = {oneIn(3) ? between(-10, 10) : 0, -g, oneIn(3) && s.simulation.dimensions == 3 ? between(-10, 10) : 0};
+        s.simulation.gravity = {oneIn(3) ? between(-10, 10) : 0, -g,
+                                oneIn(3) && s.simulation.dimensions == 3 ? between(-10, 10) : 0};
         s.simulation.jitter = oneIn(3) ? between(0, 0.2) : 0;
         s.simulation.seed = int(seed % 1000);
-        s.domain.periodicX = oneIn(4), s.domain.periodicZ = oneIn(6) && s.simulation.dimensions == 3;
+        s.domain.periodicX = oneIn(4),
+        s.domain.periodicZ = oneIn(6) && s.simulation.dimensions == 3;
         s.walls.kind = oneIn(3) ? WallKind::Reflect : WallKind::Particles;
-        s.walls.restitution = oneIn(2) ? between(0, 1) : 0, s.walls.friction = oneIn(2) ? between(0, 1) : 0;
+        s.walls.restitution = oneIn(2) ? between(0, 1) : 0,
+        s.walls.friction = oneIn(2) ? between(0, 1) : 0;
         s.fluid.restDensity = logarithmic(1, 2000);
         s.fluid.viscosity = oneIn(4) ? 0 : s.fluid.restDensity * logarithmic(1e-6, 1e-1);
         s.fluid.artificialViscosity = between(0.02, 0.3);
@@ -373,26 +483,32 @@ StressCase randomCase(uint64_t seed) {
         for (uint64_t b = 0, n = 1 + random() % 3; b < n; ++b) {
             Body body;
             body.shape = Shape(random() % 3);
-            const Vec3 low{between(0, 0.6) * size.x, between(0, 0.6) * size.y, between(0, 0.6) * size.z};
-            const Vec3 extent{between(0.1, 0.4) * size.x, between(0.1, 0.4) * size.y, between(0.1, 0.4) * size.z};
-            body.min = s.domain.min + float(scale) * low, body.max = body.min + float(scale) * extent;
+            const Vec3 low{between(0, 0.6) * size.x, between(0, 0.6) * size.y,
+                           between(0, 0.6) * size.z};
+            const Vec3 extent{between(0.1, 0.4) * size.x, between(0.1, 0.4) * size.y,
+                              between(0.1, 0.4) * size.z};
+            body.min = s.domain.min + float(scale) * low,
+            body.max = body.min + float(scale) * extent;
             body.center = 0.5f * (body.min + body.max);
             body.radius = 0.4f * float(scale) * std::min({extent.x, extent.y, extent.z});
             body.height = float(scale) * extent.y;
             const float speed = std::sqrt(float(scale)) * logarithmic(0.1, 20);
-            body.velocity = {between(-1, 1) * speed, between(-1, 1) * speed, s.simulation.dimensions == 3 ? between(-1, 1) * speed : 0};
+            body.velocity = {between(-1, 1) * speed, between(-1, 1) * speed,
+                             s.simulation.dimensions == 3 ? between(-1, 1) * speed : 0};
             s.fluid.bodies.push_back(body);
         }
         turnRareKnobs(s, seed);
         turnLocal(s, seed);
-        const bool fluidsKeepEnergy = turnFluids(s, seed), keepsEnergy = !turnThings(s, seed) && fluidsKeepEnergy;
+        const bool fluidsKeepEnergy = turnFluids(s, seed),
+                   keepsEnergy = !turnThings(s, seed) && fluidsKeepEnergy;
         try {
             checkScene(s, s.name);
-        } catch (const Error&) { continue; }   // makes no sense: the next throw of the dice
+        } catch (const Error&) { continue; }  // makes no sense: the next throw of the dice
         const int64_t count = countParticles(s).fluid;
         if (count < 20 || count > 8000) continue;
         // Who slides a lid gives energy; who falls along a periodic axis falls for ever.
-        const bool falls = (s.domain.periodicX && s.simulation.gravity.x != 0) || (s.domain.periodicZ && s.simulation.gravity.z != 0);
+        const bool falls = (s.domain.periodicX && s.simulation.gravity.x != 0) ||
+                           (s.domain.periodicZ && s.simulation.gravity.z != 0);
         return {s.name, s, 300, {}, {}, !falls && keepsEnergy && s.walls.movingFace == Face::None};
     }
 }

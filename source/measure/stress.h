@@ -14,35 +14,39 @@ struct StressCase {
     std::string name;
     Scene scene;
     int steps = 300;
-    std::function<RunState(const Scene&)> start;                      // empty: as the scene says
-    std::function<void(Simulation&, Scene&, int step)> disturb;       // called before each tenth step, live knobs are taken over; empty: nobody does
-    bool energyIsConserved = true;                                    // nobody stirs, tilts or slides
+    std::function<RunState(const Scene&)> start;  // empty: as the scene says
+    std::function<void(Simulation&, Scene&, int step)>
+        disturb;  // called before each tenth step, live knobs are taken over; empty: nobody does
+    bool energyIsConserved = true;  // nobody stirs, tilts or slides
 };
 
-// Sound: finite, inside the box, no energy from nothing, density within bounds. Stopped: not sound any more, and the health guard said
-// so before anything else. Broken: wrong, and nobody said so.
+// Sound: finite, inside the box, no energy from nothing, density within bounds. Stopped: not sound
+// any more, and the health guard said so before anything else. Broken: wrong, and nobody said so.
 enum class Verdict { Sound, Stopped, Broken };
 struct StressResult {
     Verdict verdict = Verdict::Sound;
-    std::string what;             // what was wrong, "" when sound
+    std::string what;  // what was wrong, "" when sound
     int particles = 0;
     int64_t steps = 0;
-    int retries = 0;              // how often the health guard went back
-    double energyGain = 0;        // largest gain of kinetic, potential and internal energy / (what of it can move at the start: kinetic,
-                                  // internal, M g H, and M (c / 50)^2 / 2)
-    double density = 0;           // largest rho / rho0 - 1
+    int retries = 0;  // how often the health guard went back
+    double energyGain =
+        0;  // largest gain of kinetic, potential and internal energy / (what of it can move at the
+            // start: kinetic, internal, M g H, and M (c / 50)^2 / 2)
+    double density = 0;  // largest rho / rho0 - 1
 };
 
 StressResult stress(const StressCase&);
 
-// Impacts, jets, sheets, single and coinciding particles, tilted gravity and so on, for each formulation that can do them. `full` adds
-// those that take minutes: a million steps of a still pool, three million particles.
+// Impacts, jets, sheets, single and coinciding particles, tilted gravity and so on, for each
+// formulation that can do them. `full` adds those that take minutes: a million steps of a still
+// pool, three million particles.
 std::vector<StressCase> tortures(bool full);
 
 // Some valid small scene: the same for the same seed.
 StressCase randomCase(uint64_t seed);
 
 // A coarse scene in a box of 1 m, with the knobs set ("path=value").
-StressCase boxCase(const std::string& formulation, const std::vector<std::string>& knobs, int steps);
+StressCase boxCase(const std::string& formulation, const std::vector<std::string>& knobs,
+                   int steps);
 
 }  // namespace spindrift

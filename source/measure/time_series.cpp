@@ -21,10 +21,11 @@ namespace {
 struct Quantity {
     const char *name, *unit;
     double (*of)(const Measurement&);
-    bool hasDepth = false;   // in two dimensions it is per metre of depth
+    bool hasDepth = false;  // in two dimensions it is per metre of depth
 };
 
-// The first columns, in their order; those of the caller and the passes' times, averages of one run, follow them.
+// The first columns, in their order; those of the caller and the passes' times, averages of one
+// run, follow them.
 constexpr Quantity Quantities[] = {
     {"time", "s", [](const Measurement& m) { return m.time; }},
     {"step", "", [](const Measurement& m) { return double(m.steps); }},
@@ -41,7 +42,10 @@ constexpr Quantity Quantities[] = {
     {"density_error", "1", [](const Measurement& m) { return m.densityError; }},
     {"max_density_error", "1", [](const Measurement& m) { return m.maxDensityError; }},
     {"max_speed", "m/s", [](const Measurement& m) { return m.maxSpeed; }},
-    {"evaluations", "", [](const Measurement& m) { return m.evaluations; }},   // of a particle's forces, since the beginning
+    {"evaluations", "",
+     [](const Measurement& m) {
+         return m.evaluations;
+     }},  // of a particle's forces, since the beginning
 };
 
 struct SolidQuantity {
@@ -49,12 +53,13 @@ struct SolidQuantity {
     Vec3d SolidMeasurement::*of;
     bool hasDepth = false;
 };
-constexpr SolidQuantity SolidQuantities[] = {{"position", "m", &SolidMeasurement::position},
-                                             {"velocity", "m/s", &SolidMeasurement::velocity},
-                                             {"spin", "rad/s", &SolidMeasurement::spin},
-                                             {"pressure_force", "N", &SolidMeasurement::pressureForce, true},
-                                             {"viscous_force", "N", &SolidMeasurement::viscousForce, true},
-                                             {"torque", "N m", &SolidMeasurement::torque, true}};
+constexpr SolidQuantity SolidQuantities[] = {
+    {"position", "m", &SolidMeasurement::position},
+    {"velocity", "m/s", &SolidMeasurement::velocity},
+    {"spin", "rad/s", &SolidMeasurement::spin},
+    {"pressure_force", "N", &SolidMeasurement::pressureForce, true},
+    {"viscous_force", "N", &SolidMeasurement::viscousForce, true},
+    {"torque", "N m", &SolidMeasurement::torque, true}};
 
 // Calls f(name, unit, value) for each column but those of passes.
 template <class F> void forValues(const Measurement& m, const F& f) {
@@ -70,7 +75,8 @@ template <class F> void forValues(const Measurement& m, const F& f) {
 
 }  // namespace
 
-TimeSeries::TimeSeries(std::vector<Column> more, const std::vector<PlanRow>& plan) : more_(std::move(more)) {
+TimeSeries::TimeSeries(std::vector<Column> more, const std::vector<PlanRow>& plan)
+    : more_(std::move(more)) {
     for (const PlanRow& row : plan) {
         const bool ownTime = row.skipped.empty() && row.name.find(": ") == std::string::npos;
         if (ownTime && !find(passes_, row.name)) passes_.push_back({row.name, "ms"});
@@ -91,9 +97,12 @@ void TimeSeries::goOn(const Measurement& now, const SeriesTable& earlier) {
     std::vector<size_t> places;
     for (const Column& c : earlier.columns) {
         const std::optional<size_t> known = find(columns_, c.name);
-        if (known && unitFactor(c.unit, columns_[*known].unit) != 1.0)   // however it is spelt
-            throw Error(Exit::Output, fmt::format("{}: {} is in [{}] there, here in [{}]; name another file for the series",
-                                                  earlier.path, c.name, c.unit, columns_[*known].unit));
+        if (known && unitFactor(c.unit, columns_[*known].unit) != 1.0)  // however it is spelt
+            throw Error(
+                Exit::Output,
+                fmt::format(
+                    "{}: {} is in [{}] there, here in [{}]; name another file for the series",
+                    earlier.path, c.name, c.unit, columns_[*known].unit));
         places.push_back(known.value_or(columns_.size()));
         if (!known) columns_.push_back(c);
     }
@@ -104,18 +113,19 @@ void TimeSeries::goOn(const Measurement& now, const SeriesTable& earlier) {
     remarks_ = earlier.remarks;
 }
 
-void TimeSeries::add(const Measurement& m, const std::vector<PassTime>& passes, const std::vector<double>& more) {
+void TimeSeries::add(const Measurement& m, const std::vector<PassTime>& passes,
+                     const std::vector<double>& more) {
     CHECK(more.size() == more_.size());
     if (columns_.empty()) chooseColumns(m);
     std::vector<double> row;
-    forValues(m, [&](const std::string&, const std::string&, double value) {
-        row.push_back(value);
-    });
+    forValues(m,
+              [&](const std::string&, const std::string&, double value) { row.push_back(value); });
     row.insert(row.end(), more.begin(), more.end());
     row.resize(row.size() + passes_.size(), 0);
     row.resize(columns_.size(), std::nan(""));
     for (const PassTime& pass : passes)
-        if (const auto at = find(columns_, pass.name); at && pass.runs > 0) row[*at] = pass.ms / double(pass.runs);
+        if (const auto at = find(columns_, pass.name); at && pass.runs > 0)
+            row[*at] = pass.ms / double(pass.runs);
     rows_.push_back(std::move(row));
 }
 
@@ -128,21 +138,23 @@ bool TimeSeries::remark(double time, const std::string& text) {
 
 size_t TimeSeries::dropAfter(double time) {
     const size_t before = rows_.size() + remarks_.size();
-    while (!rows_.empty() && !(rows_.back()[0] <= time)) rows_.pop_back();   // column 0 is the time
+    while (!rows_.empty() && !(rows_.back()[0] <= time)) rows_.pop_back();  // column 0 is the time
     std::erase_if(remarks_, [&](const SeriesRemark& r) { return r.time > time; });
     return before - rows_.size() - remarks_.size();
 }
 
 std::string TimeSeries::csvLine(size_t row) const {
     std::string text;
-    for (double value : rows_[row]) fmt::format_to(std::back_inserter(text), "{}{:.9g}", text.empty() ? "" : ",", value);
+    for (double value : rows_[row])
+        fmt::format_to(std::back_inserter(text), "{}{:.9g}", text.empty() ? "" : ",", value);
     return text + "\n";
 }
 
 std::string TimeSeries::csv() const {
     std::string text;
     for (const Column& c : columns_)
-        text += (text.empty() ? "" : ",") + c.name + (c.unit.empty() ? "" : fmt::format(" [{}]", c.unit));
+        text += (text.empty() ? "" : ",") + c.name +
+                (c.unit.empty() ? "" : fmt::format(" [{}]", c.unit));
     text += "\n";
     for (size_t r = 0; r <= rows_.size(); ++r) {
         for (const SeriesRemark& remark : remarks_)

@@ -10,14 +10,17 @@ namespace spindrift {
 
 class TimeSeries {
 public:
-    // `more` are columns beside those of a Measurement; each row has a value for each of them. The times of the plan's passes follow
-    // them. Which columns there are is certain from the first row on.
+    // `more` are columns beside those of a Measurement; each row has a value for each of them. The
+    // times of the plan's passes follow them. Which columns there are is certain from the first row
+    // on.
     explicit TimeSeries(std::vector<Column> more = {}, const std::vector<PlanRow>& plan = {});
-    // Begins with the rows that an earlier part of this run has left; it gets that part's own columns too, NaN where one has no value.
-    // Throws Error (Output) when units differ. Before the first row.
+    // Begins with the rows that an earlier part of this run has left; it gets that part's own
+    // columns too, NaN where one has no value. Throws Error (Output) when units differ. Before the
+    // first row.
     void goOn(const Measurement& now, const SeriesTable& earlier);
     // Appends a row. `passes` are the times since the last row; 0 where one didn't run.
-    void add(const Measurement&, const std::vector<PassTime>& passes, const std::vector<double>& more = {});
+    void add(const Measurement&, const std::vector<PassTime>& passes,
+             const std::vector<double>& more = {});
     size_t size() const { return rows_.size(); }
     // s, of the last row; -1 when there is none.
     double lastTime() const { return rows_.empty() ? -1 : rows_.back()[0]; }
@@ -34,7 +37,8 @@ public:
     // {"columns": [{"name": "time", "unit": "s"}, ...], "rows": [[...], ...]}; no numbers become
     // null. Where there are any: "remarks": [{"row": 3, "text": "..."}, ...].
     std::string json() const;
-    // An HDF5 file: for each column a dataset of float64 with the attribute "unit". Throws Error (Output), and leaves what was there.
+    // An HDF5 file: for each column a dataset of float64 with the attribute "unit". Throws Error
+    // (Output), and leaves what was there.
     void writeHdf5(const std::string& path) const;
 
 private:

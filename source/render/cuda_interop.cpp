@@ -14,7 +14,8 @@ namespace spindrift {
 static void require(cudaError_t code, const char* what) {
     if (code == cudaSuccess) return;
     cudaGetLastError();
-    throw Error(Exit::DeviceLost, std::string("the GPU was lost while ") + what + ": " + cudaGetErrorString(code) +
+    throw Error(Exit::DeviceLost, std::string("the GPU was lost while ") + what + ": " +
+                                      cudaGetErrorString(code) +
                                       "; start again, or use --backend cpu");
 }
 
@@ -22,13 +23,15 @@ static void require(cudaError_t code, const char* what) {
 static int deviceOfDisplay() {
     const EGLDisplay display = eglGetCurrentDisplay();
     if (display == EGL_NO_DISPLAY) return hostMemory;
-    const auto queryDisplay =
-        reinterpret_cast<PFNEGLQUERYDISPLAYATTRIBEXTPROC>(eglGetProcAddress("eglQueryDisplayAttribEXT"));
-    const auto queryDevice =
-        reinterpret_cast<PFNEGLQUERYDEVICEATTRIBEXTPROC>(eglGetProcAddress("eglQueryDeviceAttribEXT"));
+    const auto queryDisplay = reinterpret_cast<PFNEGLQUERYDISPLAYATTRIBEXTPROC>(
+        eglGetProcAddress("eglQueryDisplayAttribEXT"));
+    const auto queryDevice = reinterpret_cast<PFNEGLQUERYDEVICEATTRIBEXTPROC>(
+        eglGetProcAddress("eglQueryDeviceAttribEXT"));
     EGLAttrib device = 0, number = hostMemory;
-    if (!queryDisplay || !queryDevice || !queryDisplay(display, EGL_DEVICE_EXT, &device)) return hostMemory;
-    if (!queryDevice(reinterpret_cast<EGLDeviceEXT>(device), EGL_CUDA_DEVICE_NV, &number)) return hostMemory;
+    if (!queryDisplay || !queryDevice || !queryDisplay(display, EGL_DEVICE_EXT, &device))
+        return hostMemory;
+    if (!queryDevice(reinterpret_cast<EGLDeviceEXT>(device), EGL_CUDA_DEVICE_NV, &number))
+        return hostMemory;
     return int(number);
 }
 
@@ -36,7 +39,8 @@ int drawingDevice() {
     if (const int device = deviceOfDisplay(); device != hostMemory) return device;
     unsigned count = 0;
     int device = hostMemory;
-    if (cudaGLGetDevices(&count, &device, 1, cudaGLDeviceListAll) == cudaSuccess && count > 0) return device;
+    if (cudaGLGetDevices(&count, &device, 1, cudaGLDeviceListAll) == cudaSuccess && count > 0)
+        return device;
     cudaGetLastError();
     return hostMemory;
 }
@@ -57,12 +61,14 @@ void CudaLoan::end() {
 
 Vertex* CudaLoan::map() {
     require(cudaSetDevice(device_), "choosing a device");
-    // On the default stream; the device works on another one, so that GL's reading of the last picture is waited for here.
+    // On the default stream; the device works on another one, so that GL's reading of the last
+    // picture is waited for here.
     require(cudaGraphicsMapResources(1, &resource_, nullptr), "mapping the vertex buffer");
     require(cudaStreamSynchronize(nullptr), "mapping the vertex buffer");
     void* memory = nullptr;
     size_t bytes = 0;
-    require(cudaGraphicsResourceGetMappedPointer(&memory, &bytes, resource_), "mapping the vertex buffer");
+    require(cudaGraphicsResourceGetMappedPointer(&memory, &bytes, resource_),
+            "mapping the vertex buffer");
     return static_cast<Vertex*>(memory);
 }
 

@@ -7,11 +7,12 @@ struct cudaGraphicsResource;
 
 namespace spindrift {
 
-// The CUDA device on which the current GL context draws; hostMemory where GL runs elsewhere or there is no CUDA.
+// The CUDA device on which the current GL context draws; hostMemory where GL runs elsewhere or
+// there is no CUDA.
 int drawingDevice();
 
-// One GL buffer, registered with CUDA: costly, so it is done once and again only when the buffer has grown. Errors of CUDA
-// are Errors (DeviceLost).
+// One GL buffer, registered with CUDA: costly, so it is done once and again only when the buffer
+// has grown. Errors of CUDA are Errors (DeviceLost).
 class CudaLoan {
 public:
     CudaLoan() = default;
@@ -21,10 +22,10 @@ public:
 
     bool begun() const { return resource_ != nullptr; }
     void begin(GLuint buffer, int device);
-    void end();   // before the buffer gets other memory
+    void end();  // before the buffer gets other memory
 
-    // Device memory, until unmap(); GL must not touch the buffer in between. unmap() is ordered behind the device's work
-    // that was waited for.
+    // Device memory, until unmap(); GL must not touch the buffer in between. unmap() is ordered
+    // behind the device's work that was waited for.
     Vertex* map();
     void unmap();
 

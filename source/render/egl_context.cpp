@@ -32,14 +32,14 @@ EGLContext contextOn(EGLDisplay display) {
 }
 
 bool isCudaDevice(EGLDeviceEXT device, int number) {
-    const auto query =
-        reinterpret_cast<PFNEGLQUERYDEVICEATTRIBEXTPROC>(eglGetProcAddress("eglQueryDeviceAttribEXT"));
+    const auto query = reinterpret_cast<PFNEGLQUERYDEVICEATTRIBEXTPROC>(
+        eglGetProcAddress("eglQueryDeviceAttribEXT"));
     EGLAttrib found = hostMemory;
     return query && query(device, EGL_CUDA_DEVICE_NV, &found) && int(found) == number;
 }
 
-// Every display worth trying, the GPU asked for first, then other GPUs: the device platform lists them in front of
-// software.
+// Every display worth trying, the GPU asked for first, then other GPUs: the device platform lists
+// them in front of software.
 std::array<EGLDisplay, 9> displays(int cudaDevice) {
     std::array<EGLDisplay, 9> found{};
     std::array<EGLDeviceEXT, 8> devices{};
@@ -48,8 +48,9 @@ std::array<EGLDisplay, 9> displays(int cudaDevice) {
         reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(eglGetProcAddress("eglQueryDevicesEXT"));
     if (queryDevices) queryDevices(EGLint(devices.size()), devices.data(), &count);
     if (cudaDevice != hostMemory)
-        std::stable_partition(devices.begin(), devices.begin() + count,
-                              [&](EGLDeviceEXT device) { return isCudaDevice(device, cudaDevice); });
+        std::stable_partition(devices.begin(), devices.begin() + count, [&](EGLDeviceEXT device) {
+            return isCudaDevice(device, cudaDevice);
+        });
     for (EGLint i = 0; i < count; ++i)
         found[i] = eglGetPlatformDisplay(EGL_PLATFORM_DEVICE_EXT, devices[i], nullptr);
     found[count] =

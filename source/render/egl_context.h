@@ -6,7 +6,8 @@ namespace spindrift {
 
 class EglContext {
 public:
-    // Makes a 4.5 core context current on this thread, on that CUDA device if it can draw; throws Error (NoDisplay).
+    // Makes a 4.5 core context current on this thread, on that CUDA device if it can draw; throws
+    // Error (NoDisplay).
     explicit EglContext(int cudaDevice = hostMemory);
     ~EglContext();
     EglContext(const EglContext&) = delete;

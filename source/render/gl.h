@@ -15,8 +15,7 @@ std::string glName();
 bool isSoftwareGl();
 
 // Owns one GL name; `Delete` frees it while the context is current.
-template <class Delete>
-class GlName {
+template <class Delete> class GlName {
 public:
     explicit GlName(GLuint name = 0) : name_(name) {}
     GlName(GlName&& other) noexcept : name_(std::exchange(other.name_, 0)) {}

@@ -64,7 +64,8 @@ std::vector<Mark> fittingMarks(double min, double max, float bar, float overhang
         }
         if (fits && !marks.empty()) return marks;
     }
-    return {{min, tickLabel(min, 0), 0, std::max(0.0f, 0.5f * widthOf(tickLabel(min, 0)) - overhang)}};
+    return {
+        {min, tickLabel(min, 0), 0, std::max(0.0f, 0.5f * widthOf(tickLabel(min, 0)) - overhang)}};
 }
 
 namespace {

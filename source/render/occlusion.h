@@ -1,8 +1,8 @@
 #pragma once
-// What a picture shows in front, tile by tile: spheres all of which lie behind it need not be drawn.
-// Particles are drawn in two calls: first those that the tiles of the picture before don't hide, then, by
-// the tiles of what this has drawn, those of the others that were left out wrongly. The picture is the
-// same as if all had been drawn.
+// What a picture shows in front, tile by tile: spheres all of which lie behind it need not be
+// drawn. Particles are drawn in two calls: first those that the tiles of the picture before don't
+// hide, then, by the tiles of what this has drawn, those of the others that were left out wrongly.
+// The picture is the same as if all had been drawn.
 #include "render/framebuffer.h"
 #include "render/gl.h"
 
@@ -13,8 +13,8 @@ namespace spindrift {
 class Occlusion {
 public:
     Occlusion();  // needs a current context
-    // For pictures of this size and number of samples; what was known is forgotten when they change.
-    // Throws Error when a shader is missing or broken.
+    // For pictures of this size and number of samples; what was known is forgotten when they
+    // change. Throws Error when a shader is missing or broken.
     void resize(const Framebuffer&);
     // Binds the tiles for the particles' shader.
     void bind() const;

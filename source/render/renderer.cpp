@@ -19,11 +19,11 @@ struct FrameBlock {
     // Of the picture; right and up reach its edges at distance 1. Like the domain's size they are
     // given where y is up and the ground's corner is 0, whatever is up in the world.
     Four eye, right, up, forward;
-    Four sky;                      // the world's up in the camera's axes
-    Four picture;                  // width, height, samples, line width in px
-    Four domain;                   // size in m, step of the ground's grid
-    Four particle;                 // radius in m, smallest in px, px a metre at distance 1, fluids
-    Four color;                    // lowest value, 1 / span, row of the table, 1 = plain
+    Four sky;       // the world's up in the camera's axes
+    Four picture;   // width, height, samples, line width in px
+    Four domain;    // size in m, step of the ground's grid
+    Four particle;  // radius in m, smallest in px, px a metre at distance 1, fluids
+    Four color;     // lowest value, 1 / span, row of the table, 1 = plain
 };
 
 struct Segment {
@@ -36,7 +36,8 @@ constexpr float degree = 3.14159265f / 180;
 struct Upright {
     OrbitCamera camera;
     Vec3 size;
-    Upright(const OrbitCamera& world, Vec3 worldSize) : camera(world), size(world.upright(worldSize)) {
+    Upright(const OrbitCamera& world, Vec3 worldSize)
+        : camera(world), size(world.upright(worldSize)) {
         camera.target = world.upright(world.target);
         camera.upward = {0, 1, 0};
         for (int k = 0; k < 3; ++k) {

@@ -43,7 +43,8 @@ using GlShader = GlName<DeleteShader>;
 
 GlShader compile(GLenum stage, const std::string& path, const std::string& defines) {
     const std::string shared = read(pathOf("frame.glsl")), own = read(path);
-    const char* parts[] = {"#version 450 core\n", defines.c_str(), shared.c_str(), "\n#line 1\n", own.c_str()};
+    const char* parts[] = {"#version 450 core\n", defines.c_str(), shared.c_str(), "\n#line 1\n",
+                           own.c_str()};
     GlShader shader(glCreateShader(stage));
     glShaderSource(shader, GLsizei(std::size(parts)), parts, nullptr);
     glCompileShader(shader);

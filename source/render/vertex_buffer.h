@@ -17,8 +17,8 @@ public:
     void resize(int count);
     int count() const { return count_; }
 
-    // Memory for count() vertices, of that CUDA device if it is the one that draws, of the host otherwise; the old
-    // contents are undefined. Nothing may be drawn until unmap().
+    // Memory for count() vertices, of that CUDA device if it is the one that draws, of the host
+    // otherwise; the old contents are undefined. Nothing may be drawn until unmap().
     VertexMemory map(int device = hostMemory);
     void unmap();
     bool mapped() const { return mapped_ != Mapped::Not; }
@@ -29,9 +29,10 @@ private:
     enum class Mapped { Not, Host, Device };
     GlBuffer buffer_;
     int count_ = 0, capacity_ = 0;
-    std::optional<int> drawingDevice_;   // asked for when a GPU steps: without one CUDA needn't start
+    std::optional<int>
+        drawingDevice_;  // asked for when a GPU steps: without one CUDA needn't start
     Mapped mapped_ = Mapped::Not;
-    CudaLoan loan_;   // ends before the buffer does
+    CudaLoan loan_;  // ends before the buffer does
 };
 
 }  // namespace spindrift

@@ -32,8 +32,7 @@ public:
     }
 
     // Calls thing(i) for those in boxes that are entered.
-    template <class Enter, class Thing>
-    void visit(const Enter& enter, const Thing& thing) const {
+    template <class Enter, class Thing> void visit(const Enter& enter, const Thing& thing) const {
         int open[MostOpen], count = 0;
         if (!nodes_.empty()) open[count++] = 0;
         while (count > 0) {

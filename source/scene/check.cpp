@@ -28,13 +28,16 @@ namespace {
 constexpr double BytesPerParticle = 400;
 // Start and fill counters of one grid cell.
 constexpr double BytesPerCell = 16;
-// On a GPU: state, sorted copies, sort and vertices; what carried density and shifting add; boundary particles have no velocity. Cells: two starts and a count.
-constexpr double GpuBytesPerParticle = 136, GpuBytesPerCarried = 8, GpuBytesPerShifted = 32, GpuBytesPerWall = 76, GpuBytesPerCell = 13;
+// On a GPU: state, sorted copies, sort and vertices; what carried density and shifting add;
+// boundary particles have no velocity. Cells: two starts and a count.
+constexpr double GpuBytesPerParticle = 136, GpuBytesPerCarried = 8, GpuBytesPerShifted = 32,
+                 GpuBytesPerWall = 76, GpuBytesPerCell = 13;
 // Local steps: a level and its sorted copy, those of density and acceleration, a flag.
 constexpr double GpuBytesPerLocalStep = 29, GpuBytesPerLocalWall = 1;
 // Mixtures: mass and viscosity, and their sorted copies. Surface tension: a normal and its length.
 constexpr double GpuBytesPerMixed = 16, GpuBytesPerNormal = 20;
-// Of an elastic block, whose particles have 18 bonds each (measured: 1170 and 300); sheets have fewer.
+// Of an elastic block, whose particles have 18 bonds each (measured: 1170 and 300); sheets have
+// fewer.
 constexpr double BytesPerObjectParticle = 1200, GpuBytesPerObjectParticle = 320;
 constexpr double HostBytesPerGpuParticle = 100;
 constexpr double GpuBytesAnyway = 64 << 20;
@@ -73,8 +76,10 @@ void checkDomain(const Scene& scene) {
         if (scene.domain.periodic(k) && k >= dimensions)
             refuse("domain.periodic_z", "there is no z in two dimensions; leave it out");
         if (scene.domain.periodic(k) && size[k] < least)
-            refuse("domain", fmt::format("{} m along {}, a periodic axis, is less than four support radii, {} m; enlarge "
-                                         "the domain or lower simulation.spacing", size[k], axis, least));
+            refuse("domain", fmt::format("{} m along {}, a periodic axis, is less than four "
+                                         "support radii, {} m; enlarge "
+                                         "the domain or lower simulation.spacing",
+                                         size[k], axis, least));
         if (k < dimensions && size[k] < R)
             refuse("domain",
                    fmt::format(
@@ -89,16 +94,20 @@ void checkDomain(const Scene& scene) {
                            scene.simulation.support, SmallestSupport));
 }
 
-// Shifting spreads particles evenly over all the space it finds, and the pressure's gradient does not feel a surface.
+// Shifting spreads particles evenly over all the space it finds, and the pressure's gradient does
+// not feel a surface.
 void checkFills(const Scene& scene, ParticleCount count) {
     if (scene.simulation.formulation != Formulation::TransportVelocity) return;
     const Vec3d size = toDouble(scene.domain.max) - toDouble(scene.domain.min);
-    const double dx = scene.simulation.spacing, depth = scene.simulation.dimensions == 2 ? dx : size.z;
+    const double dx = scene.simulation.spacing,
+                 depth = scene.simulation.dimensions == 2 ? dx : size.z;
     const double filled = double(count.fluid) * dx * dx * dx / (size.x * size.y * depth);
     if (filled < 0.9)
         refuse("simulation.formulation",
-               fmt::format("transport_velocity has no free surfaces, and fluid fills {:.0f} % of the domain; use delta_plus "
-                           "or wcsph, or fill it", 100 * filled));
+               fmt::format("transport_velocity has no free surfaces, and fluid fills {:.0f} % of "
+                           "the domain; use delta_plus "
+                           "or wcsph, or fill it",
+                           100 * filled));
 }
 
 // Forces that not every formulation has.
@@ -107,25 +116,41 @@ void checkRareForces(const Scene& scene) {
     const Formulation formulation = scene.simulation.formulation;
     const char* name = enumNames(Formulation())[size_t(formulation)];
     if (formulation != Formulation::Wcsph && f.airDensity > 0)
-        refuse("fluid.air_density", fmt::format("who is at the surface is known by summed densities, which {} does not have; use wcsph, or 0", name));
-    const bool alone = formulation == Formulation::Classic || formulation == Formulation::TransportVelocity;
+        refuse("fluid.air_density",
+               fmt::format("who is at the surface is known by summed densities, which {} does not "
+                           "have; use wcsph, or 0",
+                           name));
+    const bool alone =
+        formulation == Formulation::Classic || formulation == Formulation::TransportVelocity;
     if (alone && (mixes(scene) || f.dissipation > 0))
-        refuse("fluid", fmt::format("velocity_transfer, buoyancy and dissipation are not of {}; use wcsph, delta_sph or delta_plus, or set "
-                                    "them to 0", name));
+        refuse("fluid", fmt::format("velocity_transfer, buoyancy and dissipation are not of {}; "
+                                    "use wcsph, delta_sph or delta_plus, or set "
+                                    "them to 0",
+                                    name));
     const bool several = isMixture(scene);
     if (several && formulation != Formulation::Wcsph && formulation != Formulation::DeltaSph)
-        refuse("fluid.bodies", fmt::format("are of several fluids, which {} does not have; use wcsph or delta_sph, or leave rest_density and "
-                                           "viscosity of the bodies out", name));
-    if (several && f.bodies.size() > 65535) refuse("fluid.bodies", "are more than the 65535 that a mixture can have; join some");
+        refuse("fluid.bodies", fmt::format("are of several fluids, which {} does not have; use "
+                                           "wcsph or delta_sph, or leave rest_density and "
+                                           "viscosity of the bodies out",
+                                           name));
+    if (several && f.bodies.size() > 65535)
+        refuse("fluid.bodies", "are more than the 65535 that a mixture can have; join some");
     for (size_t b = 0; b < f.bodies.size(); ++b)
-        if (restDensity(scene, f.bodies[b]) < 0.01f * f.restDensity || restDensity(scene, f.bodies[b]) > 100 * f.restDensity)
-            refuse(bodyPath(b) + ".rest_density", fmt::format("{} kg/m³ is more than 100 times lighter or heavier than fluid.rest_density, {} kg/m³; "
-                                                              "bring them closer", restDensity(scene, f.bodies[b]), f.restDensity));
+        if (restDensity(scene, f.bodies[b]) < 0.01f * f.restDensity ||
+            restDensity(scene, f.bodies[b]) > 100 * f.restDensity)
+            refuse(bodyPath(b) + ".rest_density",
+                   fmt::format("{} kg/m³ is more than 100 times lighter or heavier than "
+                               "fluid.rest_density, {} kg/m³; "
+                               "bring them closer",
+                               restDensity(scene, f.bodies[b]), f.restDensity));
     if (f.surfaceTension > 0 && formulation != Formulation::DeltaPlus)
-        refuse("fluid.surface_tension", fmt::format("needs particles that are kept evenly spread, or surfaces tear themselves apart; {} does "
-                                                    "not, use simulation.formulation delta_plus", name));
+        refuse("fluid.surface_tension", fmt::format("needs particles that are kept evenly spread, "
+                                                    "or surfaces tear themselves apart; {} does "
+                                                    "not, use simulation.formulation delta_plus",
+                                                    name));
     if (f.buoyancy > 0 && scene.simulation.gravityRamp > 0)
-        refuse("fluid.buoyancy", "goes with the whole gravity at once; set simulation.gravity_ramp or it to 0");
+        refuse("fluid.buoyancy",
+               "goes with the whole gravity at once; set simulation.gravity_ramp or it to 0");
 }
 
 // Relaxing works through the whole box around the bodies, and has a start of its own.
@@ -134,13 +159,18 @@ void checkPlacement(const Scene& scene) {
     if (s.placement == StartPlaces::Lattice) return;
     constexpr double MostCells = 1e8;
     if (s.jitter != 0)
-        refuse("simulation.jitter", "moves particles of a lattice; set it to 0, or simulation.placement to lattice");
+        refuse("simulation.jitter",
+               "moves particles of a lattice; set it to 0, or simulation.placement to lattice");
     for (size_t b = 0; b < scene.fluid.bodies.size(); ++b)
         if (scene.fluid.bodies[b].shape == Shape::File)
-            refuse("simulation.placement", fmt::format("relaxed moves no particles of a file, as {} has them; use lattice", bodyPath(b)));
+            refuse("simulation.placement",
+                   fmt::format("relaxed moves no particles of a file, as {} has them; use lattice",
+                               bodyPath(b)));
     if (const double cells = relaxedCells(scene); cells > MostCells)
-        refuse("simulation.placement", fmt::format("relaxed would work through {:.2g} spacings^{} around the bodies, more than {:g}; use "
-                                                   "lattice, or a larger simulation.spacing", cells, s.dimensions, MostCells));
+        refuse("simulation.placement", fmt::format("relaxed would work through {:.2g} spacings^{} "
+                                                   "around the bodies, more than {:g}; use "
+                                                   "lattice, or a larger simulation.spacing",
+                                                   cells, s.dimensions, MostCells));
 }
 
 void checkMovingFace(const Scene& scene) {
@@ -151,18 +181,22 @@ void checkMovingFace(const Scene& scene) {
         refuse("walls.moving_face", fmt::format("there is no wall at {}; name a face that has one",
                                                 enumNames(Face())[size_t(walls.movingFace)]));
     if (walls.velocity[axis] != 0)
-        refuse("walls.velocity", fmt::format("{} = {} m/s leads out of the face; a face slides along itself", "xyz"[axis],
-                                             walls.velocity[axis]));
-    if (walls.kind != WallKind::Particles || largestViscosity(scene) <= 0 || scene.simulation.formulation == Formulation::Classic)
-        refuse("walls.moving_face", "nothing sticks to it; it needs walls.kind particles, a fluid.viscosity above 0, and any "
-                                    "formulation but the classic one");
+        refuse("walls.velocity",
+               fmt::format("{} = {} m/s leads out of the face; a face slides along itself",
+                           "xyz"[axis], walls.velocity[axis]));
+    if (walls.kind != WallKind::Particles || largestViscosity(scene) <= 0 ||
+        scene.simulation.formulation == Formulation::Classic)
+        refuse("walls.moving_face",
+               "nothing sticks to it; it needs walls.kind particles, a fluid.viscosity above 0, "
+               "and any "
+               "formulation but the classic one");
 }
 
 void checkBody(const Scene& scene, size_t index) {
     const Body& body = scene.fluid.bodies[index];
     if (body.shape == Shape::Plane)
         refuse(bodyPath(index) + ".shape", "a plane is for solids; name another shape");
-    if (body.shape == Shape::File) return;   // when it is known to fit into memory
+    if (body.shape == Shape::File) return;  // when it is known to fit into memory
     if (body.shape == Shape::Mesh) checkMesh(scene, body, 1, bodyPath(index));
     const Vec3 half = toFloat(halfExtent(body)), middle = toFloat(convexOf(body, 3).middle);
     const bool cornered = body.shape == Shape::Block || body.shape == Shape::Wedge;
@@ -182,8 +216,8 @@ void checkBody(const Scene& scene, size_t index) {
                    fmt::format("{} m along {} is larger than the domain's {} m; shrink the body or "
                                "enlarge the domain",
                                extent, axis, room));
-        const bool within = low[k] >= scene.domain.min[k] - tolerance &&
-                            high[k] <= scene.domain.max[k] + tolerance;
+        const bool within =
+            low[k] >= scene.domain.min[k] - tolerance && high[k] <= scene.domain.max[k] + tolerance;
         if (!within && body.shape == Shape::Mesh) refuseMeshPlace(scene, body, bodyPath(index));
         if (!within)
             refuse(
@@ -191,9 +225,12 @@ void checkBody(const Scene& scene, size_t index) {
                 fmt::format("spans {} to {} m along {}, outside the domain's {} to {} m; move it "
                             "inside",
                             low[k], high[k], axis, scene.domain.min[k], scene.domain.max[k]));
-        if (body.field == Field::SoundWave && !(carriesDensity(scene) && (scene.fluid.soundSpeed > 0 || scene.fluid.stiffness > 0)))
-            refuse(bodyPath(index) + ".field", "a sound wave needs a fluid.sound_speed, and a formulation that carries density: "
-                                               "delta_sph or transport_velocity");
+        if (body.field == Field::SoundWave &&
+            !(carriesDensity(scene) && (scene.fluid.soundSpeed > 0 || scene.fluid.stiffness > 0)))
+            refuse(
+                bodyPath(index) + ".field",
+                "a sound wave needs a fluid.sound_speed, and a formulation that carries density: "
+                "delta_sph or transport_velocity");
         if (latticePlanes(scene, body, k) == 0)
             refuse(
                 bodyPath(index),
@@ -207,7 +244,8 @@ void requireInside(const Scene& scene, const std::string& body, const std::strin
                    const ParticleTable& table) {
     for (size_t i = 0; i < table.positions.size(); ++i)
         for (int k = 0; k < scene.simulation.dimensions; ++k) {
-            const double low = scene.domain.min[k], high = scene.domain.max[k], at = table.positions[i][k], tolerance = 1e-5 * (high - low);
+            const double low = scene.domain.min[k], high = scene.domain.max[k],
+                         at = table.positions[i][k], tolerance = 1e-5 * (high - low);
             if (!(at >= low - tolerance && at <= high + tolerance))
                 refuse(body, fmt::format("{}: {}: {} = {} m is outside the domain's {} to {} m; "
                                          "remove the particle or enlarge the domain",
@@ -220,7 +258,7 @@ void checkDensities(const std::string& body, const std::string& file, const Part
                     double rest) {
     if (table.densities.empty()) return;
     const auto [least, most] = std::minmax_element(table.densities.begin(), table.densities.end());
-    if (*most == 0) return;   // none is known
+    if (*most == 0) return;  // none is known
     if (*most < 0.01 * rest || *least > 100 * rest)
         refuse(body, fmt::format("{}: rho is {:.4g} to {:.4g} kg/m³, and {:.4g} at rest; name its "
                                  "unit in the header, as rho [g/cm³], or set "
@@ -331,15 +369,20 @@ ParticleCount countBodies(const Scene& scene) {
 void checkOutput(const Output& output) {
     const std::string& file = output.particles;
     if (!file.empty() && !file.ends_with(".csv") && !file.ends_with(".h5"))
-        refuse("output.particles", fmt::format("\"{}\" is of no known kind; name a file that ends in .csv or .h5", file));
+        refuse(
+            "output.particles",
+            fmt::format("\"{}\" is of no known kind; name a file that ends in .csv or .h5", file));
 }
 
-// Where something reads must be in the domain; in two dimensions z does not matter, and a gauge's own axis never does.
+// Where something reads must be in the domain; in two dimensions z does not matter, and a gauge's
+// own axis never does.
 void requireInside(const Scene& scene, const std::string& path, Vec3 at, int except = -1) {
     for (int k = 0; k < scene.simulation.dimensions; ++k) {
-        const float low = scene.domain.min[k], high = scene.domain.max[k], tolerance = 1e-5f * (high - low);
+        const float low = scene.domain.min[k], high = scene.domain.max[k],
+                    tolerance = 1e-5f * (high - low);
         if (k != except && !(at[k] >= low - tolerance && at[k] <= high + tolerance))
-            refuse(path, fmt::format("{} = {} m is outside the domain's {} to {} m; move it inside", "xyz"[k], at[k], low, high));
+            refuse(path, fmt::format("{} = {} m is outside the domain's {} to {} m; move it inside",
+                                     "xyz"[k], at[k], low, high));
     }
 }
 
@@ -349,9 +392,11 @@ void checkProbe(const Scene& scene, size_t index) {
     const std::string path = fmt::format("output.probes[{}]", index);
     requireColumnName(probes, index, "output.probes");
     const bool reads = probe.kind == ProbeKind::Height || probe.kind == ProbeKind::Front;
-    if (reads && int(probe.axis) >= scene.simulation.dimensions) refuse(path + ".axis", "there is no z in two dimensions; use x or y");
+    if (reads && int(probe.axis) >= scene.simulation.dimensions)
+        refuse(path + ".axis", "there is no z in two dimensions; use x or y");
     if (probe.kind == ProbeKind::Point) requireInside(scene, path + ".position", probe.position);
-    if (probe.kind == ProbeKind::Height) requireInside(scene, path + ".position", probe.position, int(probe.axis));
+    if (probe.kind == ProbeKind::Height)
+        requireInside(scene, path + ".position", probe.position, int(probe.axis));
     if (probe.kind == ProbeKind::Line) {
         requireInside(scene, path + ".from", probe.from);
         requireInside(scene, path + ".to", probe.to);
@@ -376,9 +421,10 @@ int64_t availableMemory() {
 }
 
 void checkCounts(const Scene& scene, ParticleCount count) {
-    const std::string what =
-        fmt::format("{} fluid and {} boundary particles{}", count.fluid, count.walls,
-                    scene.objects.empty() ? "" : fmt::format(", {:.0f} of objects", countObjectParticles(scene)));
+    const std::string what = fmt::format(
+        "{} fluid and {} boundary particles{}", count.fluid, count.walls,
+        scene.objects.empty() ? ""
+                              : fmt::format(", {:.0f} of objects", countObjectParticles(scene)));
     const char* remedy = "raise simulation.spacing or shrink the bodies and the domain";
     if (count.fluid > MostParticles || count.walls > MostParticles - count.fluid)
         throw Error(
@@ -410,18 +456,24 @@ double mostCells(const Scene& scene, double particles) {
 }  // namespace
 
 int64_t estimateMemory(const Scene& scene, ParticleCount count) {
-    const double particles = double(count.fluid) + double(count.walls), objects = BytesPerObjectParticle * countObjectParticles(scene);
+    const double particles = double(count.fluid) + double(count.walls),
+                 objects = BytesPerObjectParticle * countObjectParticles(scene);
     // A GPU's run keeps nothing here, but passes through.
-    if (scene.compute.backend == Backend::Cuda) return int64_t(HostBytesPerGpuParticle * particles + objects);
-    const double bytes = BytesPerParticle * particles + BytesPerCell * mostCells(scene, particles) + objects;
+    if (scene.compute.backend == Backend::Cuda)
+        return int64_t(HostBytesPerGpuParticle * particles + objects);
+    const double bytes =
+        BytesPerParticle * particles + BytesPerCell * mostCells(scene, particles) + objects;
     return int64_t(std::min(bytes, 9e18));
 }
 
-// What an integrator keeps over an evaluation of the forces, or collisions over a step, and its sorted copies, on a GPU.
+// What an integrator keeps over an evaluation of the forces, or collisions over a step, and its
+// sorted copies, on a GPU.
 static double keptBytes(const Scene& scene) {
     constexpr double Vector = 2 * 16, Scalar = 2 * 4;
-    const double place = scene.solids.empty() ? 0 : Vector;   // where ways began
-    if (scene.time.integrator == Integrator::SymplecticEuler || scene.time.integrator == Integrator::Split) return place;
+    const double place = scene.solids.empty() ? 0 : Vector;  // where ways began
+    if (scene.time.integrator == Integrator::SymplecticEuler ||
+        scene.time.integrator == Integrator::Split)
+        return place;
     if (scene.time.integrator == Integrator::VelocityVerlet) return Vector + place;
     return 2 * Vector + (carriesDensity(scene) ? Scalar : 0);
 }
@@ -429,11 +481,15 @@ static double keptBytes(const Scene& scene) {
 int64_t estimateGpuMemory(const Scene& scene, ParticleCount count) {
     const double fluid = double(count.fluid), walls = double(count.walls);
     const bool local = scene.time.mode == TimeMode::Local;
-    const double more = (local ? GpuBytesPerLocalStep : 0) + (carriesDensity(scene) ? GpuBytesPerCarried : 0) +
-                         (shiftsParticles(scene) ? GpuBytesPerShifted : 0) + (isMixture(scene) ? GpuBytesPerMixed : 0) +
-                         (scene.fluid.surfaceTension > 0 ? GpuBytesPerNormal : 0);
-    const double bytes = (GpuBytesPerParticle + more + keptBytes(scene)) * fluid + (GpuBytesPerWall + (local ? GpuBytesPerLocalWall : 0)) * walls +
-                         GpuBytesPerCell * mostCells(scene, fluid + walls) + GpuBytesPerObjectParticle * countObjectParticles(scene) + GpuBytesAnyway;
+    const double more = (local ? GpuBytesPerLocalStep : 0) +
+                        (carriesDensity(scene) ? GpuBytesPerCarried : 0) +
+                        (shiftsParticles(scene) ? GpuBytesPerShifted : 0) +
+                        (isMixture(scene) ? GpuBytesPerMixed : 0) +
+                        (scene.fluid.surfaceTension > 0 ? GpuBytesPerNormal : 0);
+    const double bytes = (GpuBytesPerParticle + more + keptBytes(scene)) * fluid +
+                         (GpuBytesPerWall + (local ? GpuBytesPerLocalWall : 0)) * walls +
+                         GpuBytesPerCell * mostCells(scene, fluid + walls) +
+                         GpuBytesPerObjectParticle * countObjectParticles(scene) + GpuBytesAnyway;
     return int64_t(std::min(bytes, 9e18));
 }
 

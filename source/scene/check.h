@@ -9,7 +9,8 @@
 
 namespace spindrift {
 
-// Bytes that a run of this scene with so many particles needs, at most: particles and grid. Computed without allocating.
+// Bytes that a run of this scene with so many particles needs, at most: particles and grid.
+// Computed without allocating.
 int64_t estimateMemory(const Scene&, ParticleCount);
 // The same on a GPU.
 int64_t estimateGpuMemory(const Scene&, ParticleCount);
@@ -18,6 +19,7 @@ int64_t estimateGpuMemory(const Scene&, ParticleCount);
 // no fluid, more particles than fit. Throws Error: Exit::Memory when the machine is too small, else
 // Exit::Scene; one line with `place` (the file), path and remedy.
 // `begun`: the particles of a run that goes on; where its bodies had theirs from no longer matters.
-void checkScene(const Scene&, const std::string& place = "scene", std::optional<ParticleCount> begun = {});
+void checkScene(const Scene&, const std::string& place = "scene",
+                std::optional<ParticleCount> begun = {});
 
 }  // namespace spindrift

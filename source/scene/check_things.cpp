@@ -16,29 +16,43 @@ void checkKeyframeList(const Keyframes& keyframes, const std::string& path) {
     for (size_t k = 0; k < keyframes.size(); ++k) {
         const Keyframe& key = keyframes[k];
         if (!std::isfinite(key.time + key.turn + key.offset.x + key.offset.y + key.offset.z))
-            refuse(path + ".keyframes", fmt::format("the one at t = {} s has a value that is no number; mend it", key.time));
+            refuse(path + ".keyframes",
+                   fmt::format("the one at t = {} s has a value that is no number; mend it",
+                               key.time));
         if (k > 0 && key.time <= keyframes[k - 1].time)
-            refuse(path + ".keyframes", fmt::format("t = {} s does not come after {} s; put them in the order of time", key.time, keyframes[k - 1].time));
+            refuse(path + ".keyframes",
+                   fmt::format("t = {} s does not come after {} s; put them in the order of time",
+                               key.time, keyframes[k - 1].time));
     }
 }
 
 void checkKeyframes(const Solid& solid, const std::string& path) {
     checkKeyframeList(solid.keyframes, path);
     if (!solid.keyframes.empty() && (solid.velocity != Vec3{} || solid.spin != 0))
-        refuse(path + ".velocity", "keyframes say already how it moves; leave velocity and spin out");
+        refuse(path + ".velocity",
+               "keyframes say already how it moves; leave velocity and spin out");
     if (largestSpeed(solid) > 1e4)
-        refuse(path, fmt::format("moves at {:.3g} m/s, faster than 1e4; check the times and the distances", largestSpeed(solid)));
+        refuse(path, fmt::format(
+                         "moves at {:.3g} m/s, faster than 1e4; check the times and the distances",
+                         largestSpeed(solid)));
 }
 
 // It goes on for ever, so that it can neither turn nor be beside itself in the next period.
 void checkPlane(const Scene& scene, const Solid& plane, size_t index) {
     const std::string path = fmt::format("solids[{}]", index);
-    if (length(plane.normal) < 1e-3f) refuse(path + ".normal", "has no direction; name one to the side where fluid is");
-    if (plane.moves()) refuse(path, "a plane is without an end and does not move; leave velocity, spin and keyframes out, or use a block");
-    if (scene.simulation.dimensions == 2 && plane.normal.z != 0) refuse(path + ".normal", "leads out of the plane, and there are two dimensions; leave z 0");
+    if (length(plane.normal) < 1e-3f)
+        refuse(path + ".normal", "has no direction; name one to the side where fluid is");
+    if (plane.moves())
+        refuse(path,
+               "a plane is without an end and does not move; leave velocity, spin and keyframes "
+               "out, or use a block");
+    if (scene.simulation.dimensions == 2 && plane.normal.z != 0)
+        refuse(path + ".normal", "leads out of the plane, and there are two dimensions; leave z 0");
     for (int k = 0; k < scene.simulation.dimensions; ++k)
         if (scene.domain.periodic(k) && plane.normal[k] != 0)
-            refuse(path + ".normal", fmt::format("{} is a periodic axis, along which a plane must go on; set it to 0, or use a block", "xyz"[k]));
+            refuse(path + ".normal", fmt::format("{} is a periodic axis, along which a plane must "
+                                                 "go on; set it to 0, or use a block",
+                                                 "xyz"[k]));
     if (!plane.name.empty()) requireColumnName(scene.solids, index, "solids");
 }
 
@@ -69,30 +83,40 @@ void requireUnits(const Scene& scene, const Form& form, double mostDomains,
 // As people would write it: to a hundredth of a spacing.
 std::string inShort(const Scene& scene, Vec3d v) {
     const double digits = std::pow(10, std::ceil(2 - std::log10(double(scene.simulation.spacing))));
-    for (int k = 0; k < 3; ++k) v[k] = std::round(v[k] * digits) / digits + 0.0;   // no -0
+    for (int k = 0; k < 3; ++k) v[k] = std::round(v[k] * digits) / digits + 0.0;  // no -0
     return fmt::format("{}, {}, {}", v.x, v.y, v.z);
 }
 
 // Springs that hold solids apart would throw them about if they began in each other.
 void checkFloating(const Scene& scene, size_t index, const std::string& path) {
     const Solid& solid = scene.solids[index];
-    if (!solid.keyframes.empty()) refuse(path + ".density", "keyframes say how it moves; leave one of the two out");
-    if (scene.time.mode == TimeMode::Local) refuse(path + ".density", "what floats needs the same step everywhere; set time.mode to cfl");
+    if (!solid.keyframes.empty())
+        refuse(path + ".density", "keyframes say how it moves; leave one of the two out");
+    if (scene.time.mode == TimeMode::Local)
+        refuse(path + ".density",
+               "what floats needs the same step everywhere; set time.mode to cfl");
     if (scene.simulation.formulation == Formulation::TransportVelocity)
-        refuse(path + ".density", "transport_velocity fills all room that walls leave; use wcsph, delta_sph or delta_plus");
+        refuse(path + ".density",
+               "transport_velocity fills all room that walls leave; use wcsph, delta_sph or "
+               "delta_plus");
     const double dx = scene.simulation.spacing;
     const Vec3d size = scene.domain.size();
     std::vector<Convex> shapes;
-    for (const Solid& other : scene.solids) shapes.push_back(convexOf(other, scene.simulation.dimensions));
+    for (const Solid& other : scene.solids)
+        shapes.push_back(convexOf(other, scene.simulation.dimensions));
     for (const Vec3& at : sampleSolid(scene, solid).positions) {
         const Vec3d p = toDouble(at);
         for (int k = 0; k < scene.simulation.dimensions; ++k)
             if (!scene.domain.periodic(k) && (p[k] < 0 || p[k] > size[k]))
-                refuse(path, fmt::format("reaches out of the domain along {}, and floats; move it inside", "xyz"[k]));
+                refuse(path,
+                       fmt::format("reaches out of the domain along {}, and floats; move it inside",
+                                   "xyz"[k]));
         for (size_t other = 0; other < scene.solids.size(); ++other) {
             const Convex& shape = shapes[other];
-            if (other != index && shape.nearest(p + toDouble(scene.domain.min) - shape.middle).distance < -0.5 * dx)
-                refuse(path, fmt::format("floats, and begins inside solids[{}]; move them apart", other));
+            if (other != index &&
+                shape.nearest(p + toDouble(scene.domain.min) - shape.middle).distance < -0.5 * dx)
+                refuse(path,
+                       fmt::format("floats, and begins inside solids[{}]; move them apart", other));
         }
     }
 }
@@ -102,7 +126,8 @@ void checkSolid(const Scene& scene, size_t index) {
     const std::string path = fmt::format("solids[{}]", index);
     if (scene.simulation.formulation == Formulation::Classic)
         refuse(path, "the classic formulation has no solids; use wcsph");
-    if (solid.shape == Shape::File) refuse(path + ".shape", "a file is for bodies of fluid; name another shape");
+    if (solid.shape == Shape::File)
+        refuse(path + ".shape", "a file is for bodies of fluid; name another shape");
     if (solid.shape == Shape::Plane) return checkPlane(scene, solid, index);
     const Vec3d half = halfExtent(solid), middle = convexOf(solid, 3).middle;
     bool outside = false;
@@ -110,18 +135,27 @@ void checkSolid(const Scene& scene, size_t index) {
         const double extent = 2 * half[k];
         const double least = 0.1 * double(scene.simulation.spacing);
         if (extent < least)
-            refuse(path, fmt::format("{:.4g} m along {} is less than a tenth of simulation.spacing, {:.4g} m; thicken it", extent, "xyz"[k], least));
-        if (scene.domain.periodic(k) && extent > scene.domain.max[k] - scene.domain.min[k] - 2 * supportRadius(scene))
-            refuse(path, fmt::format("leaves no room for fluid along {}, a periodic axis; shorten it", "xyz"[k]));
-        outside |= middle[k] + half[k] < scene.domain.min[k] || middle[k] - half[k] > scene.domain.max[k];
+            refuse(path, fmt::format("{:.4g} m along {} is less than a tenth of "
+                                     "simulation.spacing, {:.4g} m; thicken it",
+                                     extent, "xyz"[k], least));
+        if (scene.domain.periodic(k) &&
+            extent > scene.domain.max[k] - scene.domain.min[k] - 2 * supportRadius(scene))
+            refuse(path,
+                   fmt::format("leaves no room for fluid along {}, a periodic axis; shorten it",
+                               "xyz"[k]));
+        outside |=
+            middle[k] + half[k] < scene.domain.min[k] || middle[k] - half[k] > scene.domain.max[k];
     }
     if (outside && !solid.moves() && solid.shape == Shape::Mesh)
         refuseMeshPlace(scene, solid, path);
-    if (outside && !solid.moves()) refuse(path, "lies outside the domain and does not move; move it inside");
+    if (outside && !solid.moves())
+        refuse(path, "lies outside the domain and does not move; move it inside");
     if (scene.simulation.dimensions == 2 && solid.shape == Shape::Cylinder && solid.axis != Axis::Z)
         refuse(path + ".axis", "in two dimensions a cylinder is a circle about z; use z");
     if (scene.simulation.dimensions == 2 && (solid.spinAxis != Axis::Z || solid.velocity.z != 0))
-        refuse(path, "moves out of the plane, and there are two dimensions; leave z out, and turn about z");
+        refuse(
+            path,
+            "moves out of the plane, and there are two dimensions; leave z out, and turn about z");
     if (!solid.name.empty()) requireColumnName(scene.solids, index, "solids");
     checkKeyframes(solid, path);
     if (solid.floats()) checkFloating(scene, index, path);
@@ -129,7 +163,9 @@ void checkSolid(const Scene& scene, size_t index) {
 
 template <class Box> void checkBox(const Box& box, const std::string& path) {
     for (int k = 0; k < 3; ++k)
-        if (!(box.min[k] <= box.max[k])) refuse(path + ".max", fmt::format("{} is below min {} along {}; swap them", box.max[k], box.min[k], "xyz"[k]));
+        if (!(box.min[k] <= box.max[k]))
+            refuse(path + ".max", fmt::format("{} is below min {} along {}; swap them", box.max[k],
+                                              box.min[k], "xyz"[k]));
 }
 
 void checkObject(const Scene& scene, size_t index) {
@@ -138,11 +174,15 @@ void checkObject(const Scene& scene, size_t index) {
     const bool flat = scene.simulation.dimensions == 2;
     const float spacing = spacingOf(scene, o);
     if (spacing < 0.05f * scene.simulation.spacing)
-        refuse(path + ".spacing", fmt::format("{:.4g} m is less than a twentieth of simulation.spacing; raise it, or 0 for the same", spacing));
+        refuse(path + ".spacing", fmt::format("{:.4g} m is less than a twentieth of "
+                                              "simulation.spacing; raise it, or 0 for the same",
+                                              spacing));
     Vec3 low = o.min, high = o.max;
     int sides = 0;
     if (o.shape == ObjectShape::Shell) {
-        if (flat) refuse(path + ".shape", "a shell has three dimensions; use another shape, or simulation.dimensions 3");
+        if (flat)
+            refuse(path + ".shape",
+                   "a shell has three dimensions; use another shape, or simulation.dimensions 3");
         Form form;
         form.shape = Shape::Mesh, form.path = o.path, form.scale = o.scale, form.offset = o.offset;
         checkMesh(scene, form, 1, path);
@@ -157,37 +197,58 @@ void checkObject(const Scene& scene, size_t index) {
             const float half = !flat && k == int(o.axis) ? o.height / 2 : out;
             low[k] = o.center[k] - half, high[k] = o.center[k] + half;
         }
-        if (o.thickness >= 2 * o.radius) refuse(path + ".thickness", fmt::format("{} m leaves no room in the tube; make it less than twice the radius", o.thickness));
-        if (flat && o.axis != Axis::Z) refuse(path + ".axis", "in two dimensions a tube is a ring about z; use z");
+        if (o.thickness >= 2 * o.radius)
+            refuse(
+                path + ".thickness",
+                fmt::format("{} m leaves no room in the tube; make it less than twice the radius",
+                            o.thickness));
+        if (flat && o.axis != Axis::Z)
+            refuse(path + ".axis", "in two dimensions a tube is a ring about z; use z");
     } else {
         checkBox(o, path);
         for (int k = 0; k < (flat ? 2 : 3); ++k) sides += high[k] > low[k];
         const int wanted = (flat ? 2 : 3) - (o.shape == ObjectShape::Sheet);
         if (sides != wanted)
-            refuse(path, o.shape == ObjectShape::Sheet ? "a sheet is flat along one axis: give min and max the same value there, and others elsewhere"
-                                                       : "a block is no wider than a point along an axis; make max larger than min, or use a sheet");
+            refuse(path, o.shape == ObjectShape::Sheet
+                             ? "a sheet is flat along one axis: give min and max the same value "
+                               "there, and others elsewhere"
+                             : "a block is no wider than a point along an axis; make max larger "
+                               "than min, or use a sheet");
     }
     for (int k = 0; k < (flat ? 2 : 3); ++k) {
         if (low[k] < scene.domain.min[k] || high[k] > scene.domain.max[k])
-            refuse(path, fmt::format("reaches from {} to {} m along {}, out of the domain; move it inside", low[k], high[k], "xyz"[k]));
+            refuse(path, fmt::format(
+                             "reaches from {} to {} m along {}, out of the domain; move it inside",
+                             low[k], high[k], "xyz"[k]));
         if (high[k] > low[k] && high[k] - low[k] < 0.99f * spacing)
-            refuse(path, fmt::format("{:.4g} m along {} is less than the {} m between its particles; thicken it or lower spacing", high[k] - low[k], "xyz"[k], spacing));
+            refuse(path, fmt::format("{:.4g} m along {} is less than the {} m between its "
+                                     "particles; thicken it or lower spacing",
+                                     high[k] - low[k], "xyz"[k], spacing));
     }
-    const double reach = double(scene.contact.influence) * 0.5 * (double(scene.simulation.spacing) + spacing), most = 4 * double(supportRadius(scene));
+    const double reach = double(scene.contact.influence) * 0.5 *
+                         (double(scene.simulation.spacing) + spacing),
+                 most = 4 * double(supportRadius(scene));
     if (reach > most)
-        refuse(path + ".spacing", fmt::format("contacts would reach {:.4g} m, more than the four support radii, {:.4g} m, of who is looked at; lower it", reach, most));
+        refuse(path + ".spacing",
+               fmt::format("contacts would reach {:.4g} m, more than the four support radii, "
+                           "{:.4g} m, of who is looked at; lower it",
+                           reach, most));
 }
 
 // As of floating solids: springs would throw apart what begins in each other.
 void checkApart(const Scene& scene) {
-    if (std::none_of(scene.solids.begin(), scene.solids.end(), [](const Solid& s) { return s.floats(); })) return;
+    if (std::none_of(scene.solids.begin(), scene.solids.end(),
+                     [](const Solid& s) { return s.floats(); }))
+        return;
     const ObjectSample sample = sampleObjects(scene);
     for (size_t s = 0; s < scene.solids.size(); ++s) {
         if (!scene.solids[s].floats()) continue;
         const Convex shape = convexOf(scene.solids[s], scene.simulation.dimensions);
         for (size_t i = 0; i < sample.size(); ++i)
-            if (shape.nearest(toDouble(sample.positions[i] + scene.domain.min) - shape.middle).distance < 0)
-                refuse(fmt::format("objects[{}]", sample.objects[i]), fmt::format("begins inside solids[{}], which floats; move them apart", s));
+            if (shape.nearest(toDouble(sample.positions[i] + scene.domain.min) - shape.middle)
+                    .distance < 0)
+                refuse(fmt::format("objects[{}]", sample.objects[i]),
+                       fmt::format("begins inside solids[{}], which floats; move them apart", s));
     }
 }
 
@@ -207,16 +268,17 @@ void refuseMeshPlace(const Scene& scene, const Form& form, const std::string& pa
     const Vec3d middle = convexOf(form, 3).middle, half = halfExtent(form),
                 low = toDouble(scene.domain.min), high = toDouble(scene.domain.max);
     const Vec3d offset = form.offset + 0.5 * (low + high) - middle;
-    refuse(path + ".offset",
-           fmt::format("the mesh lies from ({}) to ({}) m, the domain from ({}) to ({}); [{}] would "
-                       "put it into the domain's middle",
-                       inShort(scene, middle - half), inShort(scene, middle + half),
-                       inShort(scene, low), inShort(scene, high), inShort(scene, offset)));
+    refuse(
+        path + ".offset",
+        fmt::format("the mesh lies from ({}) to ({}) m, the domain from ({}) to ({}); [{}] would "
+                    "put it into the domain's middle",
+                    inShort(scene, middle - half), inShort(scene, middle + half),
+                    inShort(scene, low), inShort(scene, high), inShort(scene, offset)));
 }
 
 void checkMeshes(const Scene& scene) {
     for (size_t i = 0; i < scene.solids.size(); ++i) {
-        constexpr double MostDomains = 20;   // ground may go on far beyond the tank
+        constexpr double MostDomains = 20;  // ground may go on far beyond the tank
         const Solid& solid = scene.solids[i];
         if (solid.shape != Shape::Mesh) continue;
         const std::string path = fmt::format("solids[{}]", i);
@@ -235,7 +297,10 @@ void checkObjects(const Scene& scene) {
     for (size_t i = 0; i < scene.objects.size(); ++i) checkObject(scene, i);
     constexpr double Most = 2e7;
     if (const double count = countObjectParticles(scene); count > Most)
-        throw Error(Exit::Memory, fmt::format("objects: {:.3g} particles are more than {:.0g}; raise their spacing", count, Most));
+        throw Error(
+            Exit::Memory,
+            fmt::format("objects: {:.3g} particles are more than {:.0g}; raise their spacing",
+                        count, Most));
     for (size_t i = 0; i < scene.grips.size(); ++i) {
         const std::string path = fmt::format("grips[{}]", i);
         checkBox(scene.grips[i], path);
@@ -243,18 +308,26 @@ void checkObjects(const Scene& scene) {
         if (!scene.grips[i].keyframes.empty() && scene.grips[i].velocity != Vec3{})
             refuse(path + ".velocity", "keyframes say already how it moves; leave velocity out");
     }
-    for (size_t i = 0; i < scene.cuts.size(); ++i) checkBox(scene.cuts[i], fmt::format("cuts[{}]", i));
+    for (size_t i = 0; i < scene.cuts.size(); ++i)
+        checkBox(scene.cuts[i], fmt::format("cuts[{}]", i));
     if (scene.objects.empty()) {
-        if (!scene.grips.empty()) refuse("grips", "there are no objects to hold; add objects or leave grips out");
-        if (!scene.cuts.empty()) refuse("cuts", "there are no objects to cut; add objects or leave cuts out");
+        if (!scene.grips.empty())
+            refuse("grips", "there are no objects to hold; add objects or leave grips out");
+        if (!scene.cuts.empty())
+            refuse("cuts", "there are no objects to cut; add objects or leave cuts out");
         return;
     }
     checkApart(scene);
     const Formulation f = scene.simulation.formulation;
     if (f == Formulation::Classic || f == Formulation::TransportVelocity)
-        refuse("objects", "need fluid that may leave room for them: simulation.formulation wcsph, delta_sph or delta_plus");
-    if (scene.time.mode == TimeMode::Local) refuse("objects", "need the same step everywhere; set time.mode to cfl");
-    if (scene.time.integrator == Integrator::VelocityVerlet) refuse("objects", "are not stepped by velocity_verlet; set time.integrator to symplectic_euler");
+        refuse("objects",
+               "need fluid that may leave room for them: simulation.formulation wcsph, delta_sph "
+               "or delta_plus");
+    if (scene.time.mode == TimeMode::Local)
+        refuse("objects", "need the same step everywhere; set time.mode to cfl");
+    if (scene.time.integrator == Integrator::VelocityVerlet)
+        refuse("objects",
+               "are not stepped by velocity_verlet; set time.integrator to symplectic_euler");
 }
 
 }  // namespace spindrift

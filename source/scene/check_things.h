@@ -1,5 +1,6 @@
 #pragma once
-// What checkScene asks of solids and elastic objects. Messages begin with the knob's path; checkScene puts the file before it.
+// What checkScene asks of solids and elastic objects. Messages begin with the knob's path;
+// checkScene puts the file before it.
 #include "core/error.h"
 #include "scene/scene.h"
 
@@ -19,11 +20,15 @@ namespace spindrift {
 template <class Member>
 void requireColumnName(const std::vector<Member>& list, size_t index, const std::string& path) {
     const std::string &name = list[index].name, at = fmt::format("{}[{}].name", path, index);
-    constexpr const char* Letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+    constexpr const char* Letters =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
     if (name.empty() || name.find_first_not_of(Letters) != std::string::npos)
-        refuse(at, fmt::format("\"{}\" can't begin a column's name; use letters, digits, _ and -", name));
+        refuse(at, fmt::format("\"{}\" can't begin a column's name; use letters, digits, _ and -",
+                               name));
     for (size_t other = 0; other < index; ++other)
-        if (list[other].name == name) refuse(at, fmt::format("\"{}\" is the name of {}[{}] too; give each its own", name, path, other));
+        if (list[other].name == name)
+            refuse(at, fmt::format("\"{}\" is the name of {}[{}] too; give each its own", name,
+                                   path, other));
 }
 
 // Whether its file is there, a closed surface, and no larger than so many domains.

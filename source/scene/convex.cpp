@@ -10,7 +10,8 @@ Vec3d halfExtent(const Form& form) {
         const auto mesh = readMesh(form.path);
         return 0.5 * double(form.scale) * (mesh->high() - mesh->low());
     }
-    if (form.shape == Shape::Block || form.shape == Shape::Wedge) return 0.5 * (toDouble(form.max) - toDouble(form.min));
+    if (form.shape == Shape::Block || form.shape == Shape::Wedge)
+        return 0.5 * (toDouble(form.max) - toDouble(form.min));
     Vec3d half{form.radius, form.radius, form.radius};
     if (form.shape == Shape::Cylinder) half[int(form.axis)] = 0.5 * double(form.height);
     return half;
@@ -67,7 +68,8 @@ Convex convexOf(const Form& form, int dimensions) {
 Convex::Nearest Convex::nearest(Vec3d p) const {
     Nearest best{-1e300, {0, 0, 0}};
     for (int k = 0; k < planes; ++k)
-        if (const double d = dot(normal[k], p) - offset[k]; d > best.distance) best = {d, normal[k]};
+        if (const double d = dot(normal[k], p) - offset[k]; d > best.distance)
+            best = {d, normal[k]};
     if (radius > 0) {
         const Vec3d d{across.x * p.x, across.y * p.y, across.z * p.z};
         const double far = length(d);
@@ -82,7 +84,8 @@ Convex::Nearest Convex::nearest(Vec3d p) const {
 }
 
 Convex::Nearest Convex::nearestOfMesh(Vec3d p, int& triangle) const {
-    const Mesh::Nearest n = mesh->nearest((1 / scale) * p + 0.5 * (mesh->low() + mesh->high()), triangle);
+    const Mesh::Nearest n =
+        mesh->nearest((1 / scale) * p + 0.5 * (mesh->low() + mesh->high()), triangle);
     return {scale * n.distance, n.normal};
 }
 

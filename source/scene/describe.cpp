@@ -26,7 +26,9 @@ Json listOf(const Knob& k, int least, int most) {
 }
 Json typeOf(Vec3, const Knob& k) { return listOf(k, 3, 3); }
 Json typeOf(Vec3d, const Knob& k) { return listOf(k, 3, 3); }
-Json typeOf(const Keyframes&, const Knob& k) { return {{"type", "array"}, {"items", listOf(k, 4, 5)}}; }
+Json typeOf(const Keyframes&, const Knob& k) {
+    return {{"type", "array"}, {"items", listOf(k, 4, 5)}};
+}
 template <class E>
 requires std::is_enum_v<E> Json typeOf(E value, const Knob&) {
     return {{"enum", enumNames(value)}};
@@ -49,8 +51,7 @@ Json& parentProperties(Json& root, std::string& path) {
 }
 
 // The schema of a list's members allows the keys of all kinds; the reader is stricter.
-template <class T>
-Json memberSchema() {
+template <class T> Json memberSchema() {
     Json member = emptyObject();
     for (const T& example : oneOfEachKind<T>())
         visitMember(example, "", [&](std::string path, const auto& value, const Knob& knob) {
@@ -66,18 +67,17 @@ std::string plain(float value) { return fmt::format("{}", value); }
 std::string plain(int value) { return fmt::format("{}", value); }
 std::string plain(bool value) { return value ? "true" : "false"; }
 std::string plain(const std::string& value) { return value.empty() ? "\"\"" : value; }
-template <class T>
-std::string plain(Vec3Of<T> v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
+template <class T> std::string plain(Vec3Of<T> v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
 std::string plain(const Keyframes& keyframes) {
     std::string text;
-    for (const Keyframe& k : keyframes) text += fmt::format("[{},{},{}]", k.time, plain(k.offset), k.turn);
+    for (const Keyframe& k : keyframes)
+        text += fmt::format("[{},{},{}]", k.time, plain(k.offset), k.turn);
     return "[" + text + "]";
 }
 template <class E>
 requires std::is_enum_v<E> std::string plain(E value) { return enumNames(value)[size_t(value)]; }
 
-template <class T>
-std::string allowed(const T& value, const Knob& knob) {
+template <class T> std::string allowed(const T& value, const Knob& knob) {
     if constexpr (std::is_enum_v<T>) {
         const auto names = enumNames(value);
         return listed({names.begin(), names.end()}, "|");
@@ -120,7 +120,8 @@ std::string jsonSchema() {
     visitLists(scene, [&](std::string path, const auto& list, const char* what) {
         using Member = typename std::decay_t<decltype(list)>::value_type;
         Json& properties = parentProperties(root, path);
-        properties[path] = Json{{"type", "array"}, {"items", memberSchema<Member>()}, {"description", what}};
+        properties[path] =
+            Json{{"type", "array"}, {"items", memberSchema<Member>()}, {"description", what}};
     });
     return root.dump(2) + "\n";
 }

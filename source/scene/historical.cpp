@@ -29,8 +29,7 @@ struct Historical {
 // Particles of the initial block are this far apart, m.
 constexpr float Spacing = 0.025f;
 
-template <class Visitor>
-void visitKnobs(Historical& h, Visitor&& visit) {
+template <class Visitor> void visitKnobs(Historical& h, Visitor&& visit) {
     auto& w = h.window;
     visit("window.title", w.title, Knob{"", 0, 0, "title of the window"});
     visit("window.width", w.width, Knob{"px", 16, 16384, "width of the window"});

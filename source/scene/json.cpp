@@ -36,12 +36,14 @@ void resizeList(Json& root, const std::string& path, std::vector<T>& list, const
     const Json* json = find(root, path);
     if (!json) return;
     if (!json->is_array())
-        place.fail(path, fmt::format("expected a list of objects [{{...}}], found {}", shown(*json)));
+        place.fail(path,
+                   fmt::format("expected a list of objects [{{...}}], found {}", shown(*json)));
     list.assign(json->size(), T{});
     for (size_t i = 0; i < json->size(); ++i)
         if (!(*json)[i].is_object())
-            place.fail(fmt::format("{}[{}]", path, i), fmt::format("expected an object {{...}}, found {}", shown((*json)[i])));
-    if (json->empty()) {   // done, and no knob knows it
+            place.fail(fmt::format("{}[{}]", path, i),
+                       fmt::format("expected an object {{...}}, found {}", shown((*json)[i])));
+    if (json->empty()) {  // done, and no knob knows it
         const size_t dot = path.rfind('.');
         (dot == std::string::npos ? root : root[path.substr(0, dot)]).erase(path.substr(dot + 1));
     }
@@ -49,7 +51,9 @@ void resizeList(Json& root, const std::string& path, std::vector<T>& list, const
 
 void readScene(Json& root, Scene& scene, const Place& place) {
     if (root.is_object()) root.erase("$schema");  // tells an editor where the schema is
-    visitLists(scene, [&](const char* path, auto& list, const char*) { resizeList(root, path, list, place); });
+    visitLists(scene, [&](const char* path, auto& list, const char*) {
+        resizeList(root, path, list, place);
+    });
     readKnobs(root, scene, place);
 }
 
@@ -125,10 +129,14 @@ Scene parseScene(const std::string& text, const std::string& place) {
 Scene loadScene(const std::string& file) {
     const std::string text = readText(file);
     Scene scene = parseScene(text, file);
-    if (parseJson(text, file).value("name", "").empty()) scene.name = std::filesystem::path(file).stem().string();
-    // A file that a scene names is beside it; known by its whole path the scene can be saved anywhere.
+    if (parseJson(text, file).value("name", "").empty())
+        scene.name = std::filesystem::path(file).stem().string();
+    // A file that a scene names is beside it; known by its whole path the scene can be saved
+    // anywhere.
     auto findBeside = [&](std::string& path) {
-        if (!path.empty()) path = (std::filesystem::absolute(file).parent_path() / path).lexically_normal().string();
+        if (!path.empty())
+            path =
+                (std::filesystem::absolute(file).parent_path() / path).lexically_normal().string();
     };
     for (Body& body : scene.fluid.bodies) findBeside(body.path);
     for (Solid& solid : scene.solids) findBeside(solid.path);

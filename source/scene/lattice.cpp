@@ -100,8 +100,8 @@ double stepAlong(const Scene& scene, int axis) {
     return best;
 }
 
-// Of the particles of files, 0 where there are none that say. A checkpoint's scene says it itself, in
-// single precision: the file may be gone.
+// Of the particles of files, 0 where there are none that say. A checkpoint's scene says it itself,
+// in single precision: the file may be gone.
 double volumeInFiles(const Scene& scene) {
     for (const Body& body : scene.fluid.bodies) {
         if (body.shape != Shape::File) continue;

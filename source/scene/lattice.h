@@ -17,8 +17,8 @@ bool areSidesWhole(const Scene&);
 // as can be.
 Vec3d wallStep(const Scene&);
 
-// Whether a particle's volume, a cell of the lattice or what the particles of a file say, is another
-// one than spacing^dimensions.
+// Whether a particle's volume, a cell of the lattice or what the particles of a file say, is
+// another one than spacing^dimensions.
 bool hasOwnVolume(const Scene&);
 
 }  // namespace spindrift

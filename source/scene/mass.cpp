@@ -10,8 +10,12 @@ static Mass massOfMesh(const Solid& solid) {
     const Convex shape = convexOf(solid, 3);
     const Mesh::Weight w = shape.mesh->weigh();
     const double s = shape.scale, volume = s * s * s, rho = solid.density;
-    Mass m{rho * volume * w.volume, s * (w.centroid - 0.5 * (shape.mesh->low() + shape.mesh->high())), {}};
-    for (int k = 0; k < 3; ++k) m.inertia[k] = (rho * volume * s * s) * Vec3d{w.inertia[k][0], w.inertia[k][1], w.inertia[k][2]};
+    Mass m{rho * volume * w.volume,
+           s * (w.centroid - 0.5 * (shape.mesh->low() + shape.mesh->high())),
+           {}};
+    for (int k = 0; k < 3; ++k)
+        m.inertia[k] =
+            (rho * volume * s * s) * Vec3d{w.inertia[k][0], w.inertia[k][1], w.inertia[k][2]};
     return m;
 }
 
@@ -19,7 +23,7 @@ Mass massOf(const Scene& scene, const Solid& solid) {
     if (solid.shape == Shape::Mesh) return massOfMesh(solid);
     const bool flat = scene.simulation.dimensions == 2;
     Vec3d half = halfExtent(solid);
-    if (flat) half.z = 0.5;   // of a metre of depth
+    if (flat) half.z = 0.5;  // of a metre of depth
     const double pi = std::numbers::pi, r = solid.radius;
     // Volume, and the mean squares of the distances from the centre along each axis.
     double volume = 8 * half.x * half.y * half.z;
@@ -38,13 +42,18 @@ Mass massOf(const Scene& scene, const Solid& solid) {
             if (k != axis) squares[k] = r * r / 4;
     }
     const double mass = solid.density * volume;
-    return {mass, centre, {{mass * (squares.y + squares.z), 0, 0}, {0, mass * (squares.z + squares.x), 0}, {0, 0, mass * (squares.x + squares.y)}}};
+    return {mass,
+            centre,
+            {{mass * (squares.y + squares.z), 0, 0},
+             {0, mass * (squares.z + squares.x), 0},
+             {0, 0, mass * (squares.x + squares.y)}}};
 }
 
 void invertTransposed(const Vec3d (&m)[3], Vec3d (&inverse)[3]) {
     const Vec3d x = cross(m[1], m[2]), y = cross(m[2], m[0]), z = cross(m[0], m[1]);
     const double perDeterminant = 1 / dot(m[0], x);
-    inverse[0] = perDeterminant * x, inverse[1] = perDeterminant * y, inverse[2] = perDeterminant * z;
+    inverse[0] = perDeterminant * x, inverse[1] = perDeterminant * y,
+    inverse[2] = perDeterminant * z;
 }
 
 // The sum of the outward normals of all faces that p is near to: at edges there are several.
@@ -57,7 +66,8 @@ static Vec3d normalsNear(const Convex& shape, Vec3d p, double near) {
     for (int k = 0; k < shape.planes; ++k)
         if (shape.offset[k] - dot(shape.normal[k], p) <= near) sum = sum + shape.normal[k];
     const Vec3d d{shape.across.x * p.x, shape.across.y * p.y, shape.across.z * p.z};
-    if (shape.radius > 0 && length(d) > 0 && shape.radius - length(d) <= near) sum = sum + (1 / length(d)) * d;
+    if (shape.radius > 0 && length(d) > 0 && shape.radius - length(d) <= near)
+        sum = sum + (1 / length(d)) * d;
     return sum;
 }
 
@@ -70,7 +80,9 @@ std::vector<Vec3d> surfaceAreas(const Scene& scene, const Solid& solid, const So
     std::vector<double> weights(areas.size());
     Vec3d slant{0, 0, 0};
     double all = 1e-30;
-    auto armOf = [&](size_t i) { return toDouble(sample.positions[i] + scene.domain.min) - shape.middle; };
+    auto armOf = [&](size_t i) {
+        return toDouble(sample.positions[i] + scene.domain.min) - shape.middle;
+    };
     for (size_t i = 0; i < areas.size(); ++i) {
         const Vec3d normal = normalsNear(shape, armOf(i), outermost);
         if (normal == Vec3d{}) continue;

@@ -76,7 +76,8 @@ Facet Mesh::facetOf(int triangle) const {
 void Mesh::findBox() {
     low_ = high_ = vertices_[size_t(triangles_[0][0])];
     for (const Triangle& t : triangles_)
-        for (int v : t) low_ = lower(low_, vertices_[size_t(v)]), high_ = upper(high_, vertices_[size_t(v)]);
+        for (int v : t)
+            low_ = lower(low_, vertices_[size_t(v)]), high_ = upper(high_, vertices_[size_t(v)]);
     for (const Vec3d& p : vertices_) onGrid_.push_back(gridPlace(p.y, p.z));
 }
 
@@ -288,11 +289,14 @@ namespace {
 
 // Of a field of this size.
 Int3 nodesOf(Vec3d size, double spacing) {
-    auto along = [&](double length) { return int(std::min(std::ceil(length / spacing), 1e6)) + 1 + 2 * NodesBeyond; };
+    auto along = [&](double length) {
+        return int(std::min(std::ceil(length / spacing), 1e6)) + 1 + 2 * NodesBeyond;
+    };
     return {along(size.x), along(size.y), along(size.z)};
 }
 bool isTooLarge(Int3 n) {
-    return double(n.x) * double(n.y) * double(n.z) > MostNodes || std::max({n.x, n.y, n.z}) > MostNodesAlong;
+    return double(n.x) * double(n.y) * double(n.z) > MostNodes ||
+           std::max({n.x, n.y, n.z}) > MostNodesAlong;
 }
 
 }  // namespace
@@ -303,15 +307,18 @@ double Mesh::fieldSpacing(double apart) const {
     const Thinnest t = thinnest(2 * spacing);
     if (t.thickness >= 2 * spacing) return spacing;
     if (isTooLarge(nodesOf(high_ - low_, 0.5 * t.thickness)))
-        throw Error(Exit::Scene, fmt::format("is {:.3g} thin near {}, too thin for its size, {:.3g}: fluid could pass; thicken it, or divide it into several",
-                                             t.thickness, shown(t.at), length(high_ - low_)));
+        throw Error(Exit::Scene,
+                    fmt::format("is {:.3g} thin near {}, too thin for its size, {:.3g}: fluid "
+                                "could pass; thicken it, or divide it into several",
+                                t.thickness, shown(t.at), length(high_ - low_)));
     return 0.5 * t.thickness;
 }
 
 DistanceField Mesh::field(double spacing) const {
     DistanceField f{{}, spacing, nodesOf(high_ - low_, spacing), {}};
     const Vec3d middle = 0.5 * (low_ + high_);
-    f.low = -0.5 * spacing * Vec3d{double(f.nodes.x - 1), double(f.nodes.y - 1), double(f.nodes.z - 1)};
+    f.low =
+        -0.5 * spacing * Vec3d{double(f.nodes.x - 1), double(f.nodes.y - 1), double(f.nodes.z - 1)};
     const size_t row = size_t(f.nodes.x);
     f.distances.resize(row * size_t(f.nodes.y) * size_t(f.nodes.z));
     std::vector<std::vector<double>> changes(size_t(f.nodes.y) * size_t(f.nodes.z));  // of each row
@@ -324,14 +331,19 @@ DistanceField Mesh::field(double spacing) const {
                    2 ==
                1;
     };
-    // Cubes of nodes that are all far from the surface are filled from their middles: outside with what is surely free, inside in a straight line.
+    // Cubes of nodes that are all far from the surface are filled from their middles: outside with
+    // what is surely free, inside in a straight line.
     constexpr int Side = 8;
-    const Int3 cubes{(f.nodes.x + Side - 1) / Side, (f.nodes.y + Side - 1) / Side, (f.nodes.z + Side - 1) / Side};
+    const Int3 cubes{(f.nodes.x + Side - 1) / Side, (f.nodes.y + Side - 1) / Side,
+                     (f.nodes.z + Side - 1) / Side};
     const double reach = 0.5 * std::sqrt(3.0) * (Side - 1) * spacing, near = 6 * spacing;
 #pragma omp parallel for schedule(dynamic, 1)
     for (int cube = 0; cube < cubes.x * cubes.y * cubes.z; ++cube) {
-        const int x = cube % cubes.x * Side, y = cube / cubes.x % cubes.y * Side, z = cube / (cubes.x * cubes.y) * Side;
-        auto at = [&](double i, double j, double k) { return middle + f.low + spacing * Vec3d{x + i, y + j, z + k}; };
+        const int x = cube % cubes.x * Side, y = cube / cubes.x % cubes.y * Side,
+                  z = cube / (cubes.x * cubes.y) * Side;
+        auto at = [&](double i, double j, double k) {
+            return middle + f.low + spacing * Vec3d{x + i, y + j, z + k};
+        };
         constexpr double half = 0.5 * (Side - 1);
         const Vec3d center = at(half, half, half);
         int facet = -1;
@@ -364,7 +376,9 @@ Mesh::Weight Mesh::weigh() const {
         w.volume += six / 6;
         first = first + (six / 24) * sum;
         for (int i = 0; i < 3; ++i)
-            for (int j = 0; j < 3; ++j) second[i][j] += six / 120 * (sum[i] * sum[j] + a[i] * a[j] + b[i] * b[j] + c[i] * c[j]);
+            for (int j = 0; j < 3; ++j)
+                second[i][j] +=
+                    six / 120 * (sum[i] * sum[j] + a[i] * a[j] + b[i] * b[j] + c[i] * c[j]);
     }
     const Vec3d arm = (1 / w.volume) * first;
     w.centroid = middle + arm;

@@ -1,5 +1,6 @@
 #pragma once
-// Solids of triangles: read from a file, checked to be closed, weighed, and asked how far away they are.
+// Solids of triangles: read from a file, checked to be closed, weighed, and asked how far away they
+// are.
 #include "core/vec.h"
 #include "scene/facet.h"
 
@@ -11,8 +12,14 @@
 
 namespace spindrift {
 
-// Distances from a surface at the nodes of a lattice around it, x first, in the units of its file; from the middle of its bounding box on.
-struct DistanceField { Vec3d low; double spacing; Int3 nodes; std::vector<float> distances; };
+// Distances from a surface at the nodes of a lattice around it, x first, in the units of its file;
+// from the middle of its bounding box on.
+struct DistanceField {
+    Vec3d low;
+    double spacing;
+    Int3 nodes;
+    std::vector<float> distances;
+};
 
 // The surface of a solid, in the units of its file.
 //
@@ -21,7 +28,7 @@ struct DistanceField { Vec3d low; double spacing; Int3 nodes; std::vector<float>
 // is wound does not matter.
 class Mesh {
 public:
-    using Triangle = std::array<int, 3>;   // corners, against the clock seen from outside
+    using Triangle = std::array<int, 3>;  // corners, against the clock seen from outside
 
     // roundOff: how wrong coordinates may be. Throws Error (Scene), one line that begins with
     // `name`, when the triangles enclose nothing or are open; see findShells.
@@ -31,16 +38,24 @@ public:
     // How far outside p is (inside: minus the depth), and the outward normal there: exact. Queries
     // of points that lie near each other hand on the part of the surface that was nearest, -1 at
     // first.
-    struct Nearest { double distance; Vec3d normal; };
+    struct Nearest {
+        double distance;
+        Vec3d normal;
+    };
     Nearest nearest(Vec3d p, int& facet) const;
     Nearest nearest(Vec3d p) const;
 
-    // Where opposite sides face each other nearer than `most`, how near that is, and where; otherwise `most`.
-    struct Thinnest { double thickness; Vec3d at; };
+    // Where opposite sides face each other nearer than `most`, how near that is, and where;
+    // otherwise `most`.
+    struct Thinnest {
+        double thickness;
+        Vec3d at;
+    };
     Thinnest thinnest(double most) const;
 
-    // For those who ask often, and elsewhere than here. How fine it must be where particles are `apart`: half of that, or less where the surface is thin. Throws
-    // Error (Scene) when it would be too large.
+    // For those who ask often, and elsewhere than here. How fine it must be where particles are
+    // `apart`: half of that, or less where the surface is thin. Throws Error (Scene) when it would
+    // be too large.
     double fieldSpacing(double apart) const;
     DistanceField field(double spacing) const;
 
@@ -52,7 +67,11 @@ public:
     double area() const { return area_; }
 
     // Of a body of density 1: volume, centroid, and the moments of inertia about it.
-    struct Weight { double volume; Vec3d centroid; double inertia[3][3]; };
+    struct Weight {
+        double volume;
+        Vec3d centroid;
+        double inertia[3][3];
+    };
     Weight weigh() const;
 
 private:

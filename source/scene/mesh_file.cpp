@@ -110,8 +110,7 @@ private:
         line.remove_prefix(end);
         return word;
     }
-    template <class T>
-    static bool parse(std::string_view word, T& value) {
+    template <class T> static bool parse(std::string_view word, T& value) {
         if (word.starts_with('+')) word.remove_prefix(1);
         const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
         return error == std::errc() && end == word.data() + word.size();

@@ -280,8 +280,7 @@ private:
         return (edge + 1 < edges_.size() ? edges_[edge + 1] : uses_.size()) - edges_[edge];
     }
     // Calls f(uses, count) for each edge of a triangle.
-    template <class F>
-    void forEdges(int triangle, const F& f) const {
+    template <class F> void forEdges(int triangle, const F& f) const {
         for (const int e : edgeOf_[size_t(triangle)])
             f(&uses_[edges_[size_t(e)]], countOf(size_t(e)));
     }

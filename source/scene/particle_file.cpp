@@ -26,20 +26,25 @@ namespace {
 constexpr const char* Names[] = {"x", "y", "z", "vx", "vy", "vz", "rho", "p", "mass"};
 constexpr const char* Units[] = {"m", "m", "m", "m/s", "m/s", "m/s", "kg/m³", "Pa", "kg"};
 constexpr size_t Columns = std::size(Names), Rho = 6, P = 7, M = 8;
-using Values = std::array<std::vector<double>, Columns>;   // of each column, empty where there is none
+using Values =
+    std::array<std::vector<double>, Columns>;  // of each column, empty where there is none
 
 [[noreturn]] void refuse(const std::string& path, const std::string& what) {
     throw Error(Exit::Scene, fmt::format("{}: {}", path, what));
 }
 
-// Which columns there are must make sense together. A density of 0 says nothing: lone particles of the
-// classic formulation, which don't count themselves, have it.
+// Which columns there are must make sense together. A density of 0 says nothing: lone particles of
+// the classic formulation, which don't count themselves, have it.
 ParticleTable tableOf(const std::string& path, Values v, std::vector<int> lines) {
     for (size_t k = 0; k < 3; ++k)
-        if (v[k].empty()) refuse(path, fmt::format("has no particles, or no column {}; it needs x, y, z, and may have vx, vy, vz, rho, p, mass", Names[k]));
+        if (v[k].empty())
+            refuse(path, fmt::format("has no particles, or no column {}; it needs x, y, z, and may "
+                                     "have vx, vy, vz, rho, p, mass",
+                                     Names[k]));
     for (size_t k = 1; k < Columns; ++k)
         if (!v[k].empty() && v[k].size() != v[0].size())
-            refuse(path, fmt::format("{} values of {}, but {} of x", v[k].size(), Names[k], v[0].size()));
+            refuse(path,
+                   fmt::format("{} values of {}, but {} of x", v[k].size(), Names[k], v[0].size()));
     if (v[3].empty() != v[4].empty() || v[4].empty() != v[5].empty())
         refuse(path, "has some of the columns vx, vy, vz; give all three or none");
     ParticleTable table;
@@ -49,9 +54,11 @@ ParticleTable tableOf(const std::string& path, Values v, std::vector<int> lines)
         table.positions.push_back({v[0][i], v[1][i], v[2][i]});
         table.velocities.push_back(v[3].empty() ? Vec3d{} : Vec3d{v[3][i], v[4][i], v[5][i]});
         for (size_t k = 0; k < Columns; ++k)
-            if (!v[k].empty() && !std::isfinite(v[k][i])) complaints.push_back(fmt::format("{}: {} is no number", table.nameOf(i), Names[k]));
+            if (!v[k].empty() && !std::isfinite(v[k][i]))
+                complaints.push_back(fmt::format("{}: {} is no number", table.nameOf(i), Names[k]));
         if (!v[Rho].empty() && v[Rho][i] < 0)
-            complaints.push_back(fmt::format("{}: rho = {:g} kg/m³ is below 0", table.nameOf(i), v[Rho][i]));
+            complaints.push_back(
+                fmt::format("{}: rho = {:g} kg/m³ is below 0", table.nameOf(i), v[Rho][i]));
         if (!v[M].empty() && v[M][i] <= 0)
             complaints.push_back(
                 fmt::format("{}: mass = {:g} kg is not above 0", table.nameOf(i), v[M][i]));
@@ -93,31 +100,36 @@ template <class F> auto withHdf5(const std::string& path, const F& f) {
         const hdf5::Handle file = hdf5::openFile(path);
         return f(file);
     } catch (const hdf5::Trouble& trouble) {
-        refuse(path, fmt::format("the HDF5 file is damaged, or {} is no list of numbers", trouble.what));
+        refuse(path,
+               fmt::format("the HDF5 file is damaged, or {} is no list of numbers", trouble.what));
     }
 }
 
 }  // namespace
 
 std::string ParticleTable::nameOf(size_t particle) const {
-    return lines.empty() ? fmt::format("particle {}", particle) : fmt::format("line {}", lines[particle]);
+    return lines.empty() ? fmt::format("particle {}", particle)
+                         : fmt::format("line {}", lines[particle]);
 }
 
 ParticleTable readParticles(const std::string& path) {
-    return hdf5::isFile(path) ? withHdf5(path, [&](hid_t file) { return readHdf5(path, file); }) : readCsv(path);
+    return hdf5::isFile(path) ? withHdf5(path, [&](hid_t file) { return readHdf5(path, file); })
+                              : readCsv(path);
 }
 
 int64_t countParticlesIn(const std::string& path) {
     if (path.empty()) refuse("\"\"", "no file is named; give its path");
     if (!hdf5::isFile(path)) return countRows(path);
-    return withHdf5(path, [](hid_t file) { return int64_t(hdf5::Array(file, Names[0], 1).size[0]); });
+    return withHdf5(path,
+                    [](hid_t file) { return int64_t(hdf5::Array(file, Names[0], 1).size[0]); });
 }
 
 // Most files have none: their header says so without reading the rest.
 static bool mayHaveMasses(const std::string& path) {
     if (hdf5::isFile(path))
-        return withHdf5(path, [](hid_t file) { return H5Lexists(file, Names[M], H5P_DEFAULT) > 0; });
-    countRows(path);   // or says why it can't be read
+        return withHdf5(path,
+                        [](hid_t file) { return H5Lexists(file, Names[M], H5P_DEFAULT) > 0; });
+    countRows(path);  // or says why it can't be read
     std::ifstream file(path);
     std::string line;
     while (std::getline(file, line)) {
@@ -161,7 +173,8 @@ std::vector<double> columnOf(const ParticleTable& table, size_t k) {
     if (k == P) return table.pressures;
     if (k == M) return table.masses;
     std::vector<double> values;
-    for (const Vec3d& v : k < 3 ? table.positions : table.velocities) values.push_back(v[int(k % 3)]);
+    for (const Vec3d& v : k < 3 ? table.positions : table.velocities)
+        values.push_back(v[int(k % 3)]);
     return values;
 }
 
@@ -175,7 +188,8 @@ bool writeCsv(const std::string& path, const std::vector<std::vector<double>>& v
     bool written = true;
     for (size_t i = 0; i < values[0].size() && written; ++i) {
         for (size_t k = 0; k < Columns; ++k)
-            if (!values[k].empty()) fmt::format_to(std::back_inserter(text), "{}{}", k ? "," : "", values[k][i]);
+            if (!values[k].empty())
+                fmt::format_to(std::back_inserter(text), "{}{}", k ? "," : "", values[k][i]);
         text += '\n';
         if (text.size() < (1 << 16) && i + 1 < values[0].size()) continue;
         written = std::fwrite(text.data(), 1, text.size(), file) == text.size();

@@ -36,8 +36,7 @@ public:
     }
     double width() const { return width_; }
     // Calls f(index, way there) for the places within `radius` of x, x itself among them.
-    template <class F>
-    void near(Vec3d x, double radius, const F& f) const {
+    template <class F> void near(Vec3d x, double radius, const F& f) const {
         int64_t from[3], to[3];
         for (int k = 0; k < 3; ++k) {
             from[k] = std::max<int64_t>(int64_t(std::floor((x[k] - radius - low_[k]) / width_)), 0);
@@ -77,8 +76,7 @@ double median(std::vector<double> values) {
 }
 
 // A regular share of the places, enough for a median.
-template <class F>
-void forSample(const std::vector<Vec3d>& places, const F& f) {
+template <class F> void forSample(const std::vector<Vec3d>& places, const F& f) {
     constexpr size_t Most = 10'000;
     for (size_t i = 0; i < places.size(); i += places.size() / Most + 1) f(i);
 }

@@ -68,7 +68,7 @@ Lattice bodyLattice(const Scene& scene, const Body& body) {
     const Vec3d step = latticeStep(scene);
     Lattice lattice{{}, {}, step};
     if (flat(scene, 2)) lattice.step.z = 0;
-    if (body.shape == Shape::File) return lattice;   // no point
+    if (body.shape == Shape::File) return lattice;  // no point
     for (int k = 0; k < 3; ++k) {
         const Planes p = planesOf(scene, body, k, step[k]);
         lattice.n[k] = p.count, lattice.first[k] = p.first, lattice.step[k] = p.step;
@@ -82,7 +82,8 @@ std::vector<Lattice> latticesOf(const Scene& scene) {
     return lattices;
 }
 
-// Whether p, relative to domain.min, lies in the body. Flat sides are taken where the lattice ends, half a spacing beyond its last plane.
+// Whether p, relative to domain.min, lies in the body. Flat sides are taken where the lattice ends,
+// half a spacing beyond its last plane.
 bool contains(const Body& body, const Lattice& lattice, Vec3d origin, Vec3d p) {
     if (body.shape == Shape::File) return false;
     for (int k = 0; k < 3; ++k) {
@@ -100,22 +101,23 @@ bool contains(const Body& body, const Lattice& lattice, Vec3d origin, Vec3d p) {
         return mesh.nearest(p + origin - mesh.middle).distance <= 1e-4 * lattice.step.x;
     }
     Vec3d d = p - (toDouble(body.center) - origin);
-    if (lattice.step.z == 0) d.z = 0;   // two dimensions
+    if (lattice.step.z == 0) d.z = 0;  // two dimensions
     if (body.shape == Shape::Cylinder) d[int(body.axis)] = 0;
     // The tolerance keeps lattice points on the surface on both sides of the centre alike.
     return length(d) <= double(body.radius) + 1e-6 * lattice.step.x;
 }
 
-// Layers of boundary particles on each face of an axis, none where it has none: all that fluid half a spacing from the face can see. Classic: one.
+// Layers of boundary particles on each face of an axis, none where it has none: all that fluid half
+// a spacing from the face can see. Classic: one.
 int64_t wallLayers(const Scene& scene, int axis) {
     if (scene.domain.periodic(axis) || flat(scene, axis)) return 0;
     if (scene.simulation.formulation == Formulation::Classic) return 1;
     return boundaryLayers(scene);
 }
 
-// The lattice whose outer layers are boundary particles. Default: it continues the fluid's lattice, the first layer half
-// a spacing outside each face. Classic: 2G points an edge at 0.999 i L/(2G-1), G = ceil(L/R) rounded as the
-// original's floats do.
+// The lattice whose outer layers are boundary particles. Default: it continues the fluid's lattice,
+// the first layer half a spacing outside each face. Classic: 2G points an edge at 0.999 i L/(2G-1),
+// G = ceil(L/R) rounded as the original's floats do.
 Lattice wallLattice(const Scene& scene) {
     Lattice lattice{};
     const Vec3d size = scene.domain.size(), step = wallStep(scene);
@@ -148,7 +150,9 @@ struct Shell {
         }
         return all - inner;
     }
-    bool contains(int64_t i, int axis) const { return i < layers[axis] || i >= lattice.n[axis] - layers[axis]; }
+    bool contains(int64_t i, int axis) const {
+        return i < layers[axis] || i >= lattice.n[axis] - layers[axis];
+    }
 };
 
 Shell wallShell(const Scene& scene) {
@@ -170,16 +174,19 @@ void placeShell(const Shell& shell, std::vector<Vec3>& out) {
 
 bool relaxed(const Scene& scene) { return scene.simulation.placement == StartPlaces::Relaxed; }
 
-// Uniform in [-reach, reach] along each axis that the scene has. The same numbers from every standard library.
+// Uniform in [-reach, reach] along each axis that the scene has. The same numbers from every
+// standard library.
 class Jitter {
 public:
-    Jitter(const Scene& scene, double reach)   // in spacings
-        : random_(unsigned(scene.simulation.seed)), dimensions_(scene.simulation.dimensions),
+    Jitter(const Scene& scene, double reach)  // in spacings
+        : random_(unsigned(scene.simulation.seed)),
+          dimensions_(scene.simulation.dimensions),
           reach_(reach * double(scene.simulation.spacing)) {}
     Vec3d next() {
         Vec3d d{0, 0, 0};
         if (reach_ == 0) return d;
-        for (int k = 0; k < dimensions_; ++k) d[k] = reach_ * (2 * (random_() + 0.5) / 4294967296.0 - 1);
+        for (int k = 0; k < dimensions_; ++k)
+            d[k] = reach_ * (2 * (random_() + 0.5) / 4294967296.0 - 1);
         return d;
     }
     size_t oneOf(size_t count) { return random_() % count; }
@@ -187,7 +194,7 @@ public:
 private:
     std::mt19937 random_;
     int dimensions_;
-    double reach_;   // m
+    double reach_;  // m
 };
 
 // Signed distance from a shape's surface at p, relative to domain.min, m: positive outside.
@@ -197,13 +204,16 @@ double distanceFrom(const Scene& scene, const Convex& shape, Vec3d p) {
 
 std::vector<Convex> solidsOf(const Scene& scene) {
     std::vector<Convex> solids;
-    for (const Solid& solid : scene.solids) solids.push_back(convexOf(solid, scene.simulation.dimensions));
+    for (const Solid& solid : scene.solids)
+        solids.push_back(convexOf(solid, scene.simulation.dimensions));
     return solids;
 }
 
-// Whether p lies in a solid or a thin skin around it, in which no fluid starts. Lattices that don't end at the surface must fill the space in
-// front of it in the mean: a tank with a wedge on its floor, H/dx = 40, has 0.5 % error of pressure with a skin of 0.1 dx, 1.7 % with 0.3 dx. Where layers
-// are parallel to a face and don't fit, there is one too few rather than one too many, which bursts.
+// Whether p lies in a solid or a thin skin around it, in which no fluid starts. Lattices that don't
+// end at the surface must fill the space in front of it in the mean: a tank with a wedge on its
+// floor, H/dx = 40, has 0.5 % error of pressure with a skin of 0.1 dx, 1.7 % with 0.3 dx. Where
+// layers are parallel to a face and don't fit, there is one too few rather than one too many, which
+// bursts.
 bool isTaken(const Scene& scene, const std::vector<Convex>& solids, double besideFaces, Vec3d p) {
     const double skin = 0.1 * double(scene.simulation.spacing);
     for (size_t s = 0; s < solids.size(); ++s) {
@@ -214,18 +224,24 @@ bool isTaken(const Scene& scene, const std::vector<Convex>& solids, double besid
 }
 
 // Where a particle begins, relative to domain.min, and of which body it has the rest.
-struct Place { Vec3d at; size_t body; };
+struct Place {
+    Vec3d at;
+    size_t body;
+};
 
-// Whether a particle of this body lies nearer to p than 0.98 spacings. Lattices that don't match and come nearer squeeze particles
-// (0.95 spacings: 6 %, 0.78: 12 %), and their fluid bursts apart in the first steps, faster than a first-order integrator follows.
+// Whether a particle of this body lies nearer to p than 0.98 spacings. Lattices that don't match
+// and come nearer squeeze particles (0.95 spacings: 6 %, 0.78: 12 %), and their fluid bursts apart
+// in the first steps, faster than a first-order integrator follows.
 bool crowds(const Body& body, const Lattice& l, Vec3d origin, Vec3d p) {
     const double least = 0.98 * leastStep(l);
     int64_t low[3];
-    for (int k = 0; k < 3; ++k) low[k] = l.step[k] > 0 ? int64_t(std::floor((p[k] - l.first[k]) / l.step[k])) : 0;
+    for (int k = 0; k < 3; ++k)
+        low[k] = l.step[k] > 0 ? int64_t(std::floor((p[k] - l.first[k]) / l.step[k])) : 0;
     for (int corner = 0; corner < 8; ++corner) {
         int64_t at[3];
         bool inside = true;
-        for (int k = 0; k < 3; ++k) at[k] = low[k] + (corner >> k & 1), inside = inside && at[k] >= 0 && at[k] < l.n[k];
+        for (int k = 0; k < 3; ++k)
+            at[k] = low[k] + (corner >> k & 1), inside = inside && at[k] >= 0 && at[k] < l.n[k];
         const Vec3d q = l.at(at[0], at[1], at[2]);
         if (inside && length(p - q) < least && contains(body, l, origin, q)) return true;
     }
@@ -233,8 +249,8 @@ bool crowds(const Body& body, const Lattice& l, Vec3d origin, Vec3d p) {
 }
 
 // Appends the points of body `b` that are not in an earlier body or a solid.
-void placeBody(const Scene& scene, const std::vector<Lattice>& lattices, size_t b, const std::vector<Convex>& solids, Jitter& jitter,
-               std::vector<Place>& out) {
+void placeBody(const Scene& scene, const std::vector<Lattice>& lattices, size_t b,
+               const std::vector<Convex>& solids, Jitter& jitter, std::vector<Place>& out) {
     const std::vector<Body>& bodies = scene.fluid.bodies;
     const Vec3d origin = toDouble(scene.domain.min);
     const Lattice& l = lattices[b];
@@ -252,8 +268,9 @@ void placeBody(const Scene& scene, const std::vector<Lattice>& lattices, size_t 
             }
 }
 
-// The body's shape with its flat sides where its lattice ends, or at a side of the domain that is nearer than half a spacing from there, and far beyond
-// that where the domain is periodic: the fluid goes on there.
+// The body's shape with its flat sides where its lattice ends, or at a side of the domain that is
+// nearer than half a spacing from there, and far beyond that where the domain is periodic: the
+// fluid goes on there.
 Form fitted(const Scene& scene, const Body& body, const Lattice& l) {
     const Vec3d size = scene.domain.size(), origin = toDouble(scene.domain.min);
     const double dx = scene.simulation.spacing;
@@ -269,9 +286,12 @@ Form fitted(const Scene& scene, const Body& body, const Lattice& l) {
         }
         if (low < 0.5 * dx) low = 0;
         if (high > size[k] - 0.5 * dx) high = size[k];
-        if (scene.domain.periodic(k) && low == 0 && high == size[k]) low -= 100 * size[k], high += 100 * size[k];
-        if (ends) form.center[k] = float(origin[k] + 0.5 * (low + high)), form.height = float(high - low);
-        else form.min[k] = float(origin[k] + low), form.max[k] = float(origin[k] + high);
+        if (scene.domain.periodic(k) && low == 0 && high == size[k])
+            low -= 100 * size[k], high += 100 * size[k];
+        if (ends)
+            form.center[k] = float(origin[k] + 0.5 * (low + high)), form.height = float(high - low);
+        else
+            form.min[k] = float(origin[k] + low), form.max[k] = float(origin[k] + high);
     }
     return form;
 }
@@ -303,11 +323,14 @@ Region regionOf(const Scene& scene, const std::vector<Form>& forms) {
     // What ends well before a periodic side has air beyond it, all the same.
     for (int k = 0; k < d; ++k) {
         const double far = 4 * double(scene.simulation.spacing);
-        region.periodic[k] = scene.domain.periodic(k) && (region.low[k] < far || region.high[k] > size[k] - far);
+        region.periodic[k] =
+            scene.domain.periodic(k) && (region.low[k] < far || region.high[k] > size[k] - far);
         if (region.periodic[k]) region.low[k] = 0, region.high[k] = size[k];
     }
     region.inside = [&scene, bodies, solids = solidsOf(scene)](Vec3d p, double width) {
-        auto within = [&](const Convex& shape) { return std::clamp(0.5 - distanceFrom(scene, shape, p) / width, 0.0, 1.0); };
+        auto within = [&](const Convex& shape) {
+            return std::clamp(0.5 - distanceFrom(scene, shape, p) / width, 0.0, 1.0);
+        };
         double share = 0;
         for (const Convex& body : bodies) share += within(body);
         share = std::min(share, 1.0);
@@ -317,8 +340,8 @@ Region regionOf(const Scene& scene, const std::vector<Form>& forms) {
     return region;
 }
 
-// Packed against the same boundary particles that fluid will feel: against a wall that is a continuum
-// it comes 0.1 spacings nearer, and is pushed off when the run begins.
+// Packed against the same boundary particles that fluid will feel: against a wall that is a
+// continuum it comes 0.1 spacings nearer, and is pushed off when the run begins.
 void addBoundary(const Scene& scene, Region& region) {
     const int d = scene.simulation.dimensions;
     const double dx = scene.simulation.spacing;
@@ -338,8 +361,8 @@ void addBoundary(const Scene& scene, Region& region) {
         region.boundaryVolumes.resize(region.boundary.size(),
                                       step.x * step.y * (d == 2 ? 1 : step.z));
     }
-    region.air = [&scene, walls, d, inside = region.inside,
-                  solids = solidsOf(scene)](Vec3d p, double width) {
+    region.air = [&scene, walls, d, inside = region.inside, solids = solidsOf(scene)](
+                     Vec3d p, double width) {
         auto within = [&](double distance) { return std::clamp(0.5 - distance / width, 0.0, 1.0); };
         double share = 1;
         for (int k = 0; k < d && walls; ++k)
@@ -351,8 +374,9 @@ void addBoundary(const Scene& scene, Region& region) {
     };
 }
 
-// From a random start: up to a spacing away from the lattice along each axis (half a spacing leaves its rows to be seen), but in the region. As many
-// as fit: a lattice in a round body has a few too many or too few.
+// From a random start: up to a spacing away from the lattice along each axis (half a spacing leaves
+// its rows to be seen), but in the region. As many as fit: a lattice in a round body has a few too
+// many or too few.
 void relaxPlaces(const Scene& scene, const std::vector<Lattice>& lattices, bool isCut,
                  std::vector<Place>& places) {
     Region region = regionOf(scene, fittedBodies(scene, lattices));
@@ -375,7 +399,7 @@ void relaxPlaces(const Scene& scene, const std::vector<Lattice>& lattices, bool 
             some.push_back(beside);
         }
     };
-    if (isCut) {   // none gets from one part to the other
+    if (isCut) {  // none gets from one part to the other
         const std::vector<double> volumes = bodyVolumes(scene);
         std::vector<Place> all;
         for (size_t b = 0; b < volumes.size(); ++b) {
@@ -452,16 +476,21 @@ Up upOf(const Scene& scene) {
 }
 
 Vec3 upward(const Scene& scene) {
-    constexpr Vec3 Axes[] = {{0, 1, 0}, {1, 0, 0},  {0, 1, 0}, {0, 0, 1},
+    constexpr Vec3 Axes[] = {{0, 1, 0},  {1, 0, 0},  {0, 1, 0}, {0, 0, 1},
                              {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
     return Axes[size_t(upOf(scene))];
 }
 
-float restDensity(const Scene& scene, const Body& body) { return body.restDensity > 0 ? body.restDensity : scene.fluid.restDensity; }
-float viscosity(const Scene& scene, const Body& body) { return body.viscosity >= 0 ? body.viscosity : scene.fluid.viscosity; }
+float restDensity(const Scene& scene, const Body& body) {
+    return body.restDensity > 0 ? body.restDensity : scene.fluid.restDensity;
+}
+float viscosity(const Scene& scene, const Body& body) {
+    return body.viscosity >= 0 ? body.viscosity : scene.fluid.viscosity;
+}
 bool isMixture(const Scene& scene) {
     return std::any_of(scene.fluid.bodies.begin(), scene.fluid.bodies.end(), [&](const Body& b) {
-        return restDensity(scene, b) != scene.fluid.restDensity || b.viscosity >= 0;   // the scene's viscosity may change during a run
+        return restDensity(scene, b) != scene.fluid.restDensity ||
+               b.viscosity >= 0;  // the scene's viscosity may change during a run
     });
 }
 float largestViscosity(const Scene& scene) {
@@ -499,7 +528,9 @@ Placement placeParticles(const Scene& scene) {
     std::vector<Place> places;
     for (size_t b = 0; b < lattices.size(); ++b)
         placeBody(cut, lattices, b, solids, jitter, places);
-    if (!scene.objects.empty()) std::erase_if(places, [objects = ObjectRoom(scene)](const Place& p) { return objects.takes(p.at); });
+    if (!scene.objects.empty())
+        std::erase_if(
+            places, [objects = ObjectRoom(scene)](const Place& p) { return objects.takes(p.at); });
     if (relaxed(scene) && !places.empty())
         relaxPlaces(cut, lattices, parts.size() > scene.fluid.bodies.size(), places);
     for (const Place& place : places) {
@@ -511,7 +542,8 @@ Placement placeParticles(const Scene& scene) {
         out.bodies.push_back(uint16_t(body));
     }
     for (size_t b = 0; b < scene.fluid.bodies.size(); ++b) {
-        if (scene.fluid.bodies[b].shape == Shape::File) placeFile(scene, scene.fluid.bodies[b], out);
+        if (scene.fluid.bodies[b].shape == Shape::File)
+            placeFile(scene, scene.fluid.bodies[b], out);
         out.bodies.resize(out.positions.size(), uint16_t(b));
     }
     if (!isMixture(scene)) out.bodies = {};
@@ -528,7 +560,8 @@ Placement placeParticles(const Scene& scene) {
 double relaxedCells(const Scene& scene) {
     const Region region = regionOf(scene, fittedBodies(scene, latticesOf(scene)));
     double cells = 1;
-    for (int k = 0; k < region.dimensions; ++k) cells *= (region.high[k] - region.low[k]) / scene.simulation.spacing;
+    for (int k = 0; k < region.dimensions; ++k)
+        cells *= (region.high[k] - region.low[k]) / scene.simulation.spacing;
     return cells;
 }
 
@@ -548,8 +581,8 @@ std::vector<double> bodyVolumes(const Scene& scene) {
         region.inside = [&, alone = region.inside](Vec3d p, double width) {
             double share = objects && objects->takes(p) ? 0 : alone(p, width);
             for (const Convex& e : earlier)
-                share = std::min(
-                    share, std::clamp(0.5 + distanceFrom(scene, e, p) / width, 0.0, 1.0));
+                share =
+                    std::min(share, std::clamp(0.5 + distanceFrom(scene, e, p) / width, 0.0, 1.0));
             return share;
         };
         double box = 1;
@@ -574,30 +607,38 @@ FluidExtent extentOf(const Placement& p) {
 
 double soundSpeed(const Scene& s, const FluidExtent& fluid) {
     const int gamma = s.fluid.equationOfState == EquationOfState::Linear ? 1 : s.fluid.gamma;
-    if (s.fluid.stiffness > 0) return std::sqrt(double(s.fluid.stiffness) * gamma / s.fluid.restDensity);
+    if (s.fluid.stiffness > 0)
+        return std::sqrt(double(s.fluid.stiffness) * gamma / s.fluid.restDensity);
     if (s.fluid.soundSpeed > 0) return s.fluid.soundSpeed;
     const Vec3d g = toDouble(s.simulation.gravity), size = s.domain.size();
-    Vec3d low = fluid.low, high = fluid.high;   // of all that falls
+    Vec3d low = fluid.low, high = fluid.high;  // of all that falls
     for (const Solid& solid : s.solids) {
         if (!solid.floats()) continue;
         const Vec3d middle = convexOf(solid, 3).middle - toDouble(s.domain.min);
-        for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], middle[k]), high[k] = std::max(high[k], middle[k]);
+        for (int k = 0; k < 3; ++k)
+            low[k] = std::min(low[k], middle[k]), high[k] = std::max(high[k], middle[k]);
     }
     for (const Object& o : s.objects) {
         const Vec3d at = middleOf(o) - toDouble(s.domain.min);
-        for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], at[k]), high[k] = std::max(high[k], at[k]);
+        for (int k = 0; k < 3; ++k)
+            low[k] = std::min(low[k], at[k]), high[k] = std::max(high[k], at[k]);
     }
-    double fall = 0;   // m^2/s^2
+    double fall = 0;  // m^2/s^2
     for (int k = 0; k < 3; ++k)
-        fall += s.domain.periodic(k) ? std::abs(g[k]) * size[k] : g[k] > 0 ? g[k] * (size[k] - low[k]) : -g[k] * high[k];
+        fall += s.domain.periodic(k) ? std::abs(g[k]) * size[k]
+                : g[k] > 0           ? g[k] * (size[k] - low[k])
+                                     : -g[k] * high[k];
     double start = std::max<double>(fluid.speed, length(s.walls.velocity));
     for (const Solid& solid : s.solids) start = std::max(start, largestSpeed(solid));
-    for (const Object& object : s.objects) start = std::max(start, length(toDouble(object.velocity)));
+    for (const Object& object : s.objects)
+        start = std::max(start, length(toDouble(object.velocity)));
     for (const Grip& grip : s.grips) start = std::max(start, largestSpeed(grip));
-    const double pull = s.simulation.centralRate * length(0.5 * size);   // to the centre from a corner
+    const double pull =
+        s.simulation.centralRate * length(0.5 * size);  // to the centre from a corner
     // The pressure in the smallest drop that is one, 2 sigma / R.
     const double tension = 4 * s.fluid.surfaceTension / (s.fluid.restDensity * supportRadius(s));
-    return s.fluid.speedRatio * std::max(std::sqrt(start * start + 2 * fall + pull * pull + tension), 1e-3);
+    return s.fluid.speedRatio *
+           std::max(std::sqrt(start * start + 2 * fall + pull * pull + tension), 1e-3);
 }
 
 // Whole shells of the bounding box.
@@ -608,9 +649,10 @@ static double mostInSolid(const Scene& scene, const Solid& solid) {
         const double n = std::ceil(2 * halfExtent(solid)[k] / scene.simulation.spacing) + 1;
         all *= n, inner *= std::max(0.0, n - 2 * boundaryLayers(scene) - 2);
     }
-    if (solid.shape == Shape::Mesh) {   // near its surface, which may be anywhere in the box
+    if (solid.shape == Shape::Mesh) {  // near its surface, which may be anywhere in the box
         const double dx = scene.simulation.spacing / double(solid.scale);
-        return std::min(all, 2 * (boundaryLayers(scene) + 1) * (readMesh(solid.path)->area() / (dx * dx) + 10));
+        return std::min(
+            all, 2 * (boundaryLayers(scene) + 1) * (readMesh(solid.path)->area() / (dx * dx) + 10));
     }
     return all - inner;
 }
@@ -627,8 +669,10 @@ ParticleCount countParticles(const Scene& scene) {
         }
         const Lattice l = bodyLattice(scene, body);
         double points = double(l.n[0]) * double(l.n[1]) * double(l.n[2]);
-        // A relaxed block fills the domain up to a side that is half a spacing beyond its last plane.
-        for (int k = 0; k < scene.simulation.dimensions && relaxed(scene); ++k) points *= 1 + 1 / std::max(double(l.n[k]), 1.0);
+        // A relaxed block fills the domain up to a side that is half a spacing beyond its last
+        // plane.
+        for (int k = 0; k < scene.simulation.dimensions && relaxed(scene); ++k)
+            points *= 1 + 1 / std::max(double(l.n[k]), 1.0);
         if (scene.simulation.dimensions == 2) {
             fluid += points;
             continue;

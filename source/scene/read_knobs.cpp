@@ -14,9 +14,8 @@ std::string withUnit(const Knob& knob) {
     return *knob.unit ? fmt::format(" in {}", knob.unit) : "";
 }
 
-template <class T>
-void requireRange(T value, const Json& json, const Knob& knob, const Place& place,
-                  const std::string& path) {
+template <class T> void requireRange(T value, const Json& json, const Knob& knob,
+                                     const Place& place, const std::string& path) {
     if (!inRange(value, knob))
         place.fail(path,
                    fmt::format("{} is out of range, allowed: {}", shown(json), allowedRange(knob)));
@@ -159,9 +158,8 @@ void assign(std::string& value, const Json& json, const Knob&, const Place& plac
     value = json.get<std::string>();
 }
 
-template <class T>
-static void assignVector(Vec3Of<T>& value, const Json& json, const Knob& knob, const Place& place,
-                         const std::string& path) {
+template <class T> static void assignVector(Vec3Of<T>& value, const Json& json, const Knob& knob,
+                                            const Place& place, const std::string& path) {
     const bool numbers =
         json.is_array() && json.size() == 3 &&
         std::all_of(json.begin(), json.end(), [](const Json& j) { return j.is_number(); });
@@ -191,19 +189,24 @@ void assign(Int3& value, const Json& json, const Knob& knob, const Place& place,
     assign(value.z, json[2], knob, place, path);
 }
 
-void assign(Keyframes& value, const Json& json, const Knob& knob, const Place& place, const std::string& path) {
+void assign(Keyframes& value, const Json& json, const Knob& knob, const Place& place,
+            const std::string& path) {
     if (!json.is_array())
-        place.fail(path, fmt::format("expected a list of keyframes [[t, x, y, z], ...], found {}", shown(json)));
+        place.fail(path, fmt::format("expected a list of keyframes [[t, x, y, z], ...], found {}",
+                                     shown(json)));
     Keyframes keyframes;
     for (const Json& row : json) {
-        const bool numbers = row.is_array() && (row.size() == 4 || row.size() == 5) &&
-                             std::all_of(row.begin(), row.end(), [](const Json& j) { return j.is_number(); });
+        const bool numbers =
+            row.is_array() && (row.size() == 4 || row.size() == 5) &&
+            std::all_of(row.begin(), row.end(), [](const Json& j) { return j.is_number(); });
         if (!numbers)
-            place.fail(path, fmt::format("expected keyframes [t, x, y, z] or [t, x, y, z, turn] in s, m and degrees, found {}",
+            place.fail(path, fmt::format("expected keyframes [t, x, y, z] or [t, x, y, z, turn] in "
+                                         "s, m and degrees, found {}",
                                          shown(row)));
         const Vec3 offset{row[1].get<float>(), row[2].get<float>(), row[3].get<float>()};
         requireRange(offset, row, knob, place, path);
-        keyframes.push_back({row[0].get<float>(), offset, row.size() == 5 ? row[4].get<float>() : 0});
+        keyframes.push_back(
+            {row[0].get<float>(), offset, row.size() == 5 ? row[4].get<float>() : 0});
     }
     value = keyframes;
 }

@@ -33,18 +33,16 @@ std::string allowedRange(const Knob&);
 // A JSON value as a message shows it: short, on one line.
 std::string shown(const Json&);
 // Whether a value lies within its knob's range; NaN never does.
-template <class T>
-bool inRange(T value, const Knob& knob) {
+template <class T> bool inRange(T value, const Knob& knob) {
     return value >= T(knob.min) && value <= T(knob.max);
 }
-template <class T>
-bool inRange(Vec3Of<T> v, const Knob& knob) {
+template <class T> bool inRange(Vec3Of<T> v, const Knob& knob) {
     return inRange(v.x, knob) && inRange(v.y, knob) && inRange(v.z, knob);
 }
 inline bool inRange(Int3 v, const Knob& knob) {
     return inRange(v.x, knob) && inRange(v.y, knob) && inRange(v.z, knob);
 }
-inline bool inRange(const Keyframes&, const Knob&) { return true; }   // checkScene looks closer
+inline bool inRange(const Keyframes&, const Knob&) { return true; }  // checkScene looks closer
 inline bool inRange(bool, const Knob&) { return true; }
 inline bool inRange(const std::string&, const Knob&) { return true; }
 template <class E>
@@ -75,8 +73,7 @@ const Json* find(const Json& root, std::string_view path);
 void refuseUnknown(const Json& root, const std::vector<std::string>& known, const Place&);
 
 // Reads every knob of `target` that stands in `root`; absent ones keep their value.
-template <class Target>
-void readKnobs(const Json& root, Target& target, const Place& place) {
+template <class Target> void readKnobs(const Json& root, Target& target, const Place& place) {
     std::vector<std::string> known;
     visitKnobs(target, [&](const std::string& path, auto& value, const Knob& knob) {
         known.push_back(path);

@@ -16,15 +16,17 @@ constexpr double Radius = 2.6;
 constexpr int Steps = 100;
 // The way of a step is so much R^2 grad C (0.2 is unstable), and never more than so many spacings.
 constexpr double Strength = 0.1, Longest = 0.2;
-// The share of a step's way that the next one goes on with (Polyak 1964), beside boundary particles: what
-// is uneven over many spacings fades several times faster, forces that push particles from their places
-// by four. Drops in free space, so packed, lie in rows and swing 8.5 instead of 4.8 % too slowly.
+// The share of a step's way that the next one goes on with (Polyak 1964), beside boundary
+// particles: what is uneven over many spacings fades several times faster, forces that push
+// particles from their places by four. Drops in free space, so packed, lie in rows and swing 8.5
+// instead of 4.8 % too slowly.
 constexpr double Momentum = 0.8;
 
 // What repels: places and volumes, sorted into cells that are at least a radius wide.
 class Crowd {
 public:
-    Crowd(const Region& region, double radius) : region_(region), radius_(radius), size_(region.high - region.low) {
+    Crowd(const Region& region, double radius)
+        : region_(region), radius_(radius), size_(region.high - region.low) {
         for (int k = 0; k < 3; ++k) {
             const bool flat = region.dimensions == 2 && k == 2;
             const double around = region.periodic[k] ? 0 : radius, length = size_[k] + 2 * around;
@@ -36,7 +38,8 @@ public:
     void fill(const std::vector<Vec3d>& places, const std::vector<double>& volumes) {
         std::vector<int> cell(places.size());
         start_.assign(size_t(cells_[0]) * size_t(cells_[1]) * size_t(cells_[2]) + 1, 0);
-        for (size_t i = 0; i < places.size(); ++i) ++start_[size_t(cell[i] = cellOf(places[i])) + 1];
+        for (size_t i = 0; i < places.size(); ++i)
+            ++start_[size_t(cell[i] = cellOf(places[i])) + 1];
         for (size_t c = 1; c < start_.size(); ++c) start_[c] += start_[c - 1];
         std::vector<int> next = start_;
         places_.resize(places.size()), volumes_.resize(places.size());
@@ -45,15 +48,17 @@ public:
             places_[to] = places[i], volumes_[to] = volumes[i];
         }
     }
-    // sum V r (1 - q)^3, which the gradient of Wendland's kernel is but for a factor: away from those who are near.
+    // sum V r (1 - q)^3, which the gradient of Wendland's kernel is but for a factor: away from
+    // those who are near.
     Vec3d push(Vec3d x) const {
         Vec3d sum{0, 0, 0};
         int at[3], reach[3];
-        for (int k = 0; k < 3; ++k) at[k] = indexOf(x, k), reach[k] = region_.dimensions == 2 && k == 2 ? 0 : 1;
+        for (int k = 0; k < 3; ++k)
+            at[k] = indexOf(x, k), reach[k] = region_.dimensions == 2 && k == 2 ? 0 : 1;
         for (int z = -reach[2]; z <= reach[2]; ++z)
             for (int y = -reach[1]; y <= reach[1]; ++y)
                 for (int dx = -reach[0]; dx <= reach[0]; ++dx) {
-                    Vec3d seen = x;   // from the cell's own image of the domain
+                    Vec3d seen = x;  // from the cell's own image of the domain
                     const int cell = neighbour(at, dx, y, z, seen);
                     if (cell >= 0) sum = sum + pushOf(cell, seen);
                 }
@@ -61,8 +66,12 @@ public:
     }
 
 private:
-    int indexOf(Vec3d x, int k) const { return std::clamp(int(std::floor((x[k] - low_[k]) / width_[k])), 0, cells_[k] - 1); }
-    int cellOf(Vec3d x) const { return (indexOf(x, 2) * cells_[1] + indexOf(x, 1)) * cells_[0] + indexOf(x, 0); }
+    int indexOf(Vec3d x, int k) const {
+        return std::clamp(int(std::floor((x[k] - low_[k]) / width_[k])), 0, cells_[k] - 1);
+    }
+    int cellOf(Vec3d x) const {
+        return (indexOf(x, 2) * cells_[1] + indexOf(x, 1)) * cells_[0] + indexOf(x, 0);
+    }
     int neighbour(const int (&at)[3], int x, int y, int z, Vec3d& seen) const {
         int cell[3] = {at[0] + x, at[1] + y, at[2] + z};
         for (int k = 0; k < 3; ++k) {
@@ -87,31 +96,34 @@ private:
 
     const Region& region_;
     double radius_;
-    Vec3d size_, low_, width_;   // m
+    Vec3d size_, low_, width_;  // m
     int cells_[3];
     std::vector<int> start_;
     std::vector<Vec3d> places_;
     std::vector<double> volumes_;
 };
 
-// Calls f(middle of a cell) for the cells of a lattice over the box and a margin around its sides that are not periodic. Returns the
-// volume of a cell.
+// Calls f(middle of a cell) for the cells of a lattice over the box and a margin around its sides
+// that are not periodic. Returns the volume of a cell.
 template <class F> double forCells(const Region& region, double width, double margin, const F& f) {
     int64_t n[3];
     Vec3d first, step;
     double volume = 1;
     for (int k = 0; k < 3; ++k) {
-        const double around = region.periodic[k] ? 0 : margin, length = region.high[k] - region.low[k] + 2 * around;
+        const double around = region.periodic[k] ? 0 : margin,
+                     length = region.high[k] - region.low[k] + 2 * around;
         const bool flat = region.dimensions == 2 && k == 2;
         n[k] = flat ? 1 : std::max<int64_t>(1, std::llround(length / width));
         step[k] = flat ? 0 : length / double(n[k]);
-        first[k] = flat ? 0.5 * (region.low[k] + region.high[k]) : region.low[k] + 0.5 * step[k] - around;
+        first[k] =
+            flat ? 0.5 * (region.low[k] + region.high[k]) : region.low[k] + 0.5 * step[k] - around;
         volume *= flat ? 1 : step[k];
     }
     for (int64_t z = 0; z < n[2]; ++z)
         for (int64_t y = 0; y < n[1]; ++y)
             for (int64_t x = 0; x < n[0]; ++x)
-                f(Vec3d{first.x + double(x) * step.x, first.y + double(y) * step.y, first.z + double(z) * step.z});
+                f(Vec3d{first.x + double(x) * step.x, first.y + double(y) * step.y,
+                        first.z + double(z) * step.z});
     return volume;
 }
 
@@ -120,7 +132,8 @@ template <class F> double forCells(const Region& region, double width, double ma
 double volumeOf(const Region& region, double spacing) {
     double cells = 0;
     const double width = spacing / 2;
-    const double volume = forCells(region, width, 0, [&](Vec3d p) { cells += region.inside(p, width); });
+    const double volume =
+        forCells(region, width, 0, [&](Vec3d p) { cells += region.inside(p, width); });
     return cells * volume;
 }
 
@@ -132,7 +145,8 @@ void relax(std::vector<Vec3d>& positions, const Region& region, double spacing, 
     const double cell = forCells(region, width, radius, [&](Vec3d p) {
         const double share = region.air ? region.air(p, width) : 1 - region.inside(p, width);
         // What no particle can see is left out.
-        if (share > 0 && region.inside(p, 2 * (radius + spacing)) > 0) outside.push_back(p), volumes.push_back(share);
+        if (share > 0 && region.inside(p, 2 * (radius + spacing)) > 0)
+            outside.push_back(p), volumes.push_back(share);
     });
     for (double& v : volumes) v *= cell;
     outside.insert(outside.end(), region.boundary.begin(), region.boundary.end());
@@ -140,18 +154,20 @@ void relax(std::vector<Vec3d>& positions, const Region& region, double spacing, 
     Crowd surroundings(region, radius), crowd(region, radius);
     surroundings.fill(outside, volumes);
     // grad W = -20 norm / R^2 r (1 - q)^3.
-    const double norm = d == 2 ? 7 / (std::numbers::pi * radius * radius) : 21 / (2 * std::numbers::pi * radius * radius * radius);
+    const double norm = d == 2 ? 7 / (std::numbers::pi * radius * radius)
+                               : 21 / (2 * std::numbers::pi * radius * radius * radius);
     const std::vector<double> own(positions.size(), std::pow(spacing, d));
     std::vector<Vec3d> next(positions.size());
     auto into = [&](Vec3d x) {
         for (int k = 0; k < d; ++k) {
             const double low = region.low[k], high = region.high[k], size = high - low;
             x[k] = region.periodic[k] ? x[k] - size * std::floor((x[k] - low) / size)
-                                      : std::clamp(x[k], std::min(low + spacing / 4, high), std::max(high - spacing / 4, low));
+                                      : std::clamp(x[k], std::min(low + spacing / 4, high),
+                                                   std::max(high - spacing / 4, low));
         }
         return x;
     };
-    std::vector<Vec3d> ways(positions.size());   // of the step before
+    std::vector<Vec3d> ways(positions.size());  // of the step before
     const double momentum = region.boundary.empty() ? 0 : Momentum;
     auto moved = [&](Vec3d x, Vec3d& before) {
         const Vec3d push = crowd.push(x) + surroundings.push(x);

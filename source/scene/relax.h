@@ -7,7 +7,8 @@
 
 namespace spindrift {
 
-// What lies in a box from low to high, m; along a periodic axis that is a period. In two dimensions z is that of the particles.
+// What lies in a box from low to high, m; along a periodic axis that is a period. In two dimensions
+// z is that of the particles.
 struct Region {
     int dimensions = 3;
     Vec3d low, high;
@@ -22,11 +23,13 @@ struct Region {
     std::function<double(Vec3d, double)> air{};
 };
 
-double volumeOf(const Region&, double spacing);   // m^3, in two dimensions m^2
+double volumeOf(const Region&, double spacing);  // m^3, in two dimensions m^2
 
-// Moves particles until they are pushed equally from all sides by each other and by what surrounds the region: packing after Colagrossi,
-// Bouscasse, Antuono & Marrone 2012 (Computer Physics Communications 183, 1641), here as a hundred steps down the gradient of sum V W over the particles
-// over those of the boundary, and over a fine lattice in what else is outside. Each particle has the volume spacing^d. The same bits for any number of threads; 0 of them: all.
+// Moves particles until they are pushed equally from all sides by each other and by what surrounds
+// the region: packing after Colagrossi, Bouscasse, Antuono & Marrone 2012 (Computer Physics
+// Communications 183, 1641), here as a hundred steps down the gradient of sum V W over the
+// particles over those of the boundary, and over a fine lattice in what else is outside. Each
+// particle has the volume spacing^d. The same bits for any number of threads; 0 of them: all.
 void relax(std::vector<Vec3d>& positions, const Region&, double spacing, int threads);
 
 }  // namespace spindrift

@@ -11,7 +11,9 @@ namespace spindrift {
 namespace {
 
 using std::numbers::pi;
-struct Point2 { double x, y; };
+struct Point2 {
+    double x, y;
+};
 
 // Cell centres of n equal pieces of [-half, half].
 std::vector<double> centres(double half, double dx) {
@@ -29,7 +31,8 @@ std::vector<Point2> circle(double radius, double dx) {
     if (radius < 0.3 * dx) return {{0, 0}};
     const int n = std::max(3, int(std::round(2 * pi * radius / dx)));
     std::vector<Point2> ring;
-    for (int i = 0; i < n; ++i) ring.push_back({radius * std::cos(2 * pi * i / n), radius * std::sin(2 * pi * i / n)});
+    for (int i = 0; i < n; ++i)
+        ring.push_back({radius * std::cos(2 * pi * i / n), radius * std::sin(2 * pi * i / n)});
     return ring;
 }
 
@@ -39,13 +42,16 @@ std::vector<Point2> triangle(double b, double h, double depth, double dx) {
     if (depth > inRadius - 0.2 * dx) return {};
     // All sides move as the triangle shrinks towards the centre of its inscribed circle.
     const double scale = 1 - depth / inRadius, centreY = -h + inRadius;
-    auto corner = [&](double x, double y) { return Point2{scale * x, centreY + scale * (y - centreY)}; };
+    auto corner = [&](double x, double y) {
+        return Point2{scale * x, centreY + scale * (y - centreY)};
+    };
     const Point2 corners[] = {corner(-b, -h), corner(b, -h), corner(0, h), corner(-b, -h)};
     std::vector<Point2> ring;
     for (int k = 0; k < 3; ++k) {
         const Point2 from = corners[k], to = corners[k + 1];
         const int n = std::max(1, int(std::round(std::hypot(to.x - from.x, to.y - from.y) / dx)));
-        for (int i = 0; i < n; ++i) ring.push_back({from.x + (to.x - from.x) * i / n, from.y + (to.y - from.y) * i / n});
+        for (int i = 0; i < n; ++i)
+            ring.push_back({from.x + (to.x - from.x) * i / n, from.y + (to.y - from.y) * i / n});
     }
     return ring;
 }
@@ -63,7 +69,8 @@ void addSphere(double radius, double dx, Points& out) {
     const int n = std::max(1, int(std::round(area)));
     for (int i = 0; i < n; ++i) {
         const double y = 1 - (2 * i + 1.0) / n, across = std::sqrt(1 - y * y);
-        out.add(radius * Vec3d{across * std::cos(golden * i), y, across * std::sin(golden * i)}, (area + pi / 3) / n);
+        out.add(radius * Vec3d{across * std::cos(golden * i), y, across * std::sin(golden * i)},
+                (area + pi / 3) / n);
     }
 }
 
@@ -71,13 +78,16 @@ void addSphere(double radius, double dx, Points& out) {
 void addBlock(const Scene& scene, Vec3d half, int layers, Points& out) {
     const double dx = scene.simulation.spacing;
     const bool flat = scene.simulation.dimensions == 2;
-    const std::vector<double> x = centres(half.x, dx), y = centres(half.y, dx), z = flat ? std::vector<double>{0} : centres(half.z, dx);
+    const std::vector<double> x = centres(half.x, dx), y = centres(half.y, dx),
+                              z = flat ? std::vector<double>{0} : centres(half.z, dx);
     auto step = [&](double halfSide, size_t n) { return 2 * halfSide / (double(n) * dx); };
-    const double volume = step(half.x, x.size()) * step(half.y, y.size()) * (flat ? 1 : step(half.z, z.size()));
+    const double volume =
+        step(half.x, x.size()) * step(half.y, y.size()) * (flat ? 1 : step(half.z, z.size()));
     for (size_t k = 0; k < z.size(); ++k)
         for (size_t j = 0; j < y.size(); ++j)
             for (size_t i = 0; i < x.size(); ++i)
-                if (std::min({depthOf(i, x.size()), depthOf(j, y.size()), flat ? layers : depthOf(k, z.size())}) < layers)
+                if (std::min({depthOf(i, x.size()), depthOf(j, y.size()),
+                              flat ? layers : depthOf(k, z.size())}) < layers)
                     out.add({x[i], y[j], z[k]}, volume);
 }
 
@@ -103,7 +113,8 @@ void addPrism(const Scene& scene, const Solid& solid, int layers, Points& out) {
         for (int layer = 0; filled || layer < layers; ++layer) {
             const double depth = (layer + 0.5) * dx, radius = solid.radius - depth;
             if (round && radius < 0) break;
-            const std::vector<Point2> ring = round ? circle(radius, dx) : triangle(half.x, half.y, depth, dx);
+            const std::vector<Point2> ring =
+                round ? circle(radius, dx) : triangle(half.x, half.y, depth, dx);
             if (ring.empty()) break;
             const double around = round ? std::max(2 * pi * radius, dx) : lengthOf(ring);
             for (const Point2& p : ring) {
@@ -115,15 +126,19 @@ void addPrism(const Scene& scene, const Solid& solid, int layers, Points& out) {
     }
 }
 
-// Along one axis: where particles can be seen, and how far they are apart, which along an axis of the domain fits it as its walls' lattice does.
-struct Stretch { double low, high, step; };
+// Along one axis: where particles can be seen, and how far they are apart, which along an axis of
+// the domain fits it as its walls' lattice does.
+struct Stretch {
+    double low, high, step;
+};
 Stretch stretchAlong(const Scene& scene, Vec3d direction) {
     const double dx = scene.simulation.spacing, R = supportRadius(scene);
     const Vec3d size = scene.domain.size();
     Stretch s{0, 0, dx};
     for (int k = 0; k < 3; ++k) {
         const double beyond = scene.domain.periodic(k) ? 0 : R;
-        s.low += std::min(-beyond * direction[k], (size[k] + beyond) * direction[k]), s.high += std::max(-beyond * direction[k], (size[k] + beyond) * direction[k]);
+        s.low += std::min(-beyond * direction[k], (size[k] + beyond) * direction[k]),
+            s.high += std::max(-beyond * direction[k], (size[k] + beyond) * direction[k]);
         if (direction[k] == 1) s.step = wallStep(scene)[k];
     }
     return s;
@@ -134,7 +149,8 @@ void addPlane(const Scene& scene, const Solid& solid, int layers, Points& out) {
     const double dx = scene.simulation.spacing;
     const bool flat = scene.simulation.dimensions == 2;
     const Vec3d normal = normalized(toDouble(solid.normal)), size = scene.domain.size();
-    // Across: the axis of the domain that is least along the normal, in its projection, and what is across both.
+    // Across: the axis of the domain that is least along the normal, in its projection, and what is
+    // across both.
     int least = flat ? 2 : 0;
     for (int k = 1; k < 3 && !flat; ++k)
         if (std::abs(normal[k]) < std::abs(normal[least])) least = k;
@@ -143,7 +159,8 @@ void addPlane(const Scene& scene, const Solid& solid, int layers, Points& out) {
     const Vec3d first = normalized(axis - normal[least] * normal);
     Vec3d second = cross(normal, first);
     if (second.x + second.y + second.z < 0) second = -1.0 * second;
-    const Stretch a = flat ? Stretch{0, dx, dx} : stretchAlong(scene, first), b = stretchAlong(scene, second);
+    const Stretch a = flat ? Stretch{0, dx, dx} : stretchAlong(scene, first),
+                  b = stretchAlong(scene, second);
     const double height = dot(normal, toDouble(solid.center) - toDouble(scene.domain.min));
     const double volume = flat ? b.step / dx : a.step * b.step / (dx * dx);
     auto inside = [&](Vec3d p) {
@@ -158,17 +175,20 @@ void addPlane(const Scene& scene, const Solid& solid, int layers, Points& out) {
         for (double i = std::floor(a.low / a.step); i * a.step < a.high; ++i)
             for (double j = std::floor(b.low / b.step); j * b.step < b.high; ++j) {
                 Vec3d p = (height - (layer + 0.5) * dx) * normal + ((j + 0.5) * b.step) * second;
-                if (flat) p.z = middle;
-                else p = p + ((i + 0.5) * a.step) * first;
+                if (flat)
+                    p.z = middle;
+                else
+                    p = p + ((i + 0.5) * a.step) * first;
                 if (inside(p)) out.add(p, volume);
             }
 }
 
-// What is inside of the cells of a lattice that fits the mesh's box: a particle where its middle is, with its volume. Cells are looked at in boxes, of which
-// most are too far inside or outside.
+// What is inside of the cells of a lattice that fits the mesh's box: a particle where its middle
+// is, with its volume. Cells are looked at in boxes, of which most are too far inside or outside.
 class MeshSampler {
 public:
-    MeshSampler(const Convex& shape, double dx, int layers, Points& out) : shape_(shape), deepest_(layers * dx), out_(out) {
+    MeshSampler(const Convex& shape, double dx, int layers, Points& out)
+        : shape_(shape), deepest_(layers * dx), out_(out) {
         const double half[3] = {shape.offset[0], shape.offset[2], shape.offset[4]};
         int end[3];
         for (int k = 0; k < 3; ++k) {
@@ -185,10 +205,12 @@ private:
         Vec3d half, middle;
         int longest = 0;
         for (int k = 0; k < 3; ++k) {
-            half[k] = 0.5 * (end[k] - first[k]) * cell_[k], middle[k] = low_[k] + first[k] * cell_[k] + half[k];
+            half[k] = 0.5 * (end[k] - first[k]) * cell_[k],
+            middle[k] = low_[k] + first[k] * cell_[k] + half[k];
             if (end[k] - first[k] > end[longest] - first[longest]) longest = k;
         }
-        const double distance = shape_.nearestOfMesh(middle, triangle_).distance, reach = length(half);
+        const double distance = shape_.nearestOfMesh(middle, triangle_).distance,
+                     reach = length(half);
         if (distance > reach || distance < -deepest_ - reach) return;
         if (end[longest] - first[longest] == 1) return addCell(middle, distance < -reach);
         for (int side : {0, 1}) {
@@ -200,10 +222,15 @@ private:
     void addCell(Vec3d middle, bool whole) {
         double share = whole ? 1 : 0;
         Vec3d at = whole ? middle : Vec3d{};
-        constexpr int N = 4;   // parts a side
+        constexpr int N = 4;  // parts a side
         for (int i = 0; i < N * N * N && !whole; ++i) {
-            const Vec3d p = middle + Vec3d{((i % N + 0.5) / N - 0.5) * cell_.x, ((i / N % N + 0.5) / N - 0.5) * cell_.y, ((i / (N * N) + 0.5) / N - 0.5) * cell_.z};
-            const double part = std::clamp(0.5 - shape_.nearestOfMesh(p, triangle_).distance * N / cell_.x, 0.0, 1.0) / (N * N * N);
+            const Vec3d p = middle + Vec3d{((i % N + 0.5) / N - 0.5) * cell_.x,
+                                           ((i / N % N + 0.5) / N - 0.5) * cell_.y,
+                                           ((i / (N * N) + 0.5) / N - 0.5) * cell_.z};
+            const double part =
+                std::clamp(0.5 - shape_.nearestOfMesh(p, triangle_).distance * N / cell_.x, 0.0,
+                           1.0) /
+                (N * N * N);
             share += part, at = at + part * p;
         }
         if (share < 0.02) return;
@@ -220,25 +247,36 @@ private:
 
 }  // namespace
 
-int boundaryLayers(const Scene& scene) { return std::max(1, int(std::ceil(scene.simulation.support)) - 1); }
+int boundaryLayers(const Scene& scene) {
+    return std::max(1, int(std::ceil(scene.simulation.support)) - 1);
+}
 
 SolidSample sampleSolid(const Scene& scene, const Solid& solid) {
     const int layers = boundaryLayers(scene);
     const double dx = scene.simulation.spacing;
     const bool flat = scene.simulation.dimensions == 2;
     Points points;
-    if (solid.shape == Shape::Block) addBlock(scene, halfExtent(solid), layers, points);
+    if (solid.shape == Shape::Block)
+        addBlock(scene, halfExtent(solid), layers, points);
     else if (solid.shape == Shape::Sphere && !flat)
-        for (int k = 0; k < layers && (k + 0.5) * dx < double(solid.radius); ++k) addSphere(solid.radius - (k + 0.5) * dx, dx, points);
-    else if (solid.shape == Shape::Plane) addPlane(scene, solid, layers, points);
-    else if (solid.shape == Shape::Mesh) MeshSampler(convexOf(solid, 3), dx, layers, points);
-    else addPrism(scene, solid, layers, points);
-    Vec3d middle = solid.shape == Shape::Plane ? Vec3d{} : convexOf(solid, 3).middle - toDouble(scene.domain.min);
-    if (flat && solid.shape != Shape::Plane) middle.z = 0.5 * (toDouble(scene.domain.max) - toDouble(scene.domain.min)).z;
+        for (int k = 0; k < layers && (k + 0.5) * dx < double(solid.radius); ++k)
+            addSphere(solid.radius - (k + 0.5) * dx, dx, points);
+    else if (solid.shape == Shape::Plane)
+        addPlane(scene, solid, layers, points);
+    else if (solid.shape == Shape::Mesh)
+        MeshSampler(convexOf(solid, 3), dx, layers, points);
+    else
+        addPrism(scene, solid, layers, points);
+    Vec3d middle = solid.shape == Shape::Plane
+                       ? Vec3d{}
+                       : convexOf(solid, 3).middle - toDouble(scene.domain.min);
+    if (flat && solid.shape != Shape::Plane)
+        middle.z = 0.5 * (toDouble(scene.domain.max) - toDouble(scene.domain.min)).z;
     const Vec3d size = toDouble(scene.domain.max) - toDouble(scene.domain.min);
-    auto seen = [&](Vec3d p) {   // by any fluid, ever
+    auto seen = [&](Vec3d p) {  // by any fluid, ever
         for (int k = 0; k < scene.simulation.dimensions; ++k)
-            if (std::max(-p[k], p[k] - size[k]) > double(supportRadius(scene))) return solid.moves();
+            if (std::max(-p[k], p[k] - size[k]) > double(supportRadius(scene)))
+                return solid.moves();
         return true;
     };
     SolidSample out;
@@ -251,7 +289,8 @@ SolidSample sampleSolid(const Scene& scene, const Solid& solid) {
 double mostOfPlane(const Scene& scene) {
     Vec3d most = scene.domain.size();
     for (int k = 0; k < 3; ++k) most[k] += 2 * double(supportRadius(scene));
-    const double across = (length(most) + 2 * scene.simulation.spacing) / (0.6 * double(scene.simulation.spacing));
+    const double across =
+        (length(most) + 2 * scene.simulation.spacing) / (0.6 * double(scene.simulation.spacing));
     return boundaryLayers(scene) * (scene.simulation.dimensions == 2 ? across : across * across);
 }
 

@@ -6,13 +6,18 @@
 
 namespace spindrift {
 
-// Layers of boundary particles behind a surface: all that fluid half a spacing in front of it can see.
+// Layers of boundary particles behind a surface: all that fluid half a spacing in front of it can
+// see.
 int boundaryLayers(const Scene&);
 
-// Layers of particles inside the solid's surface, the first one half a spacing deep and each parallel to it, about one spacing apart:
-// places in m relative to domain.min, in two dimensions in the middle of z; and the volume that each stands for, in those of a fluid particle at rest, which
+// Layers of particles inside the solid's surface, the first one half a spacing deep and each
+// parallel to it, about one spacing apart: places in m relative to domain.min, in two dimensions in
+// the middle of z; and the volume that each stands for, in those of a fluid particle at rest, which
 // add up to the layers' own.
-struct SolidSample { std::vector<Vec3> positions; std::vector<float> volumes; };
+struct SolidSample {
+    std::vector<Vec3> positions;
+    std::vector<float> volumes;
+};
 SolidSample sampleSolid(const Scene&, const Solid&);
 
 // No plane has more particles.

@@ -1,6 +1,6 @@
 #pragma once
-// What to simulate, as plain values in SI units. The default of every knob stands here and nowhere else;
-// scene/schema.h gives each its path, unit, range and help.
+// What to simulate, as plain values in SI units. The default of every knob stands here and nowhere
+// else; scene/schema.h gives each its path, unit, range and help.
 #include "core/color_map.h"
 #include "core/vec.h"
 
@@ -39,231 +39,249 @@ enum class ObjectShape { Block, Sheet, Tube, Shell };
 // solids only, reads center, a point of it, and normal.
 struct Form {
     Shape shape = Shape::Block;
-    Vec3 min{0, 0, 0}, max{0.5f, 0.5f, 0.5f};   // m
-    Vec3 center{0.5f, 0.5f, 0.5f};              // m
-    float radius = 0.1f;                        // m
-    float height = 0.2f;                        // m
+    Vec3 min{0, 0, 0}, max{0.5f, 0.5f, 0.5f};  // m
+    Vec3 center{0.5f, 0.5f, 0.5f};             // m
+    float radius = 0.1f;                       // m
+    float height = 0.2f;                       // m
     Axis axis = Axis::Y;
-    Vec3 normal{0, 1, 0};                       // to the side where fluid is, of any length
-    std::string path{};                         // of a file, beside the scene file when relative
-    float scale = 1;                            // m per unit of a mesh's file
-    Vec3d offset{0, 0, 0};                      // m, where the mesh's origin is; files of surveys have theirs far away
+    Vec3 normal{0, 1, 0};   // to the side where fluid is, of any length
+    std::string path{};     // of a file, beside the scene file when relative
+    float scale = 1;        // m per unit of a mesh's file
+    Vec3d offset{0, 0, 0};  // m, where the mesh's origin is; files of surveys have theirs far away
 };
 
 // One body of fluid, filled on a lattice, or with the particles of a file as they are.
 struct Body : Form {
-    Vec3 velocity{0, 0, 0};                     // m/s; for a field its amplitude is the length
-    Field field = Field::Uniform;               // of velocity at the start
-    float restDensity = 0;                      // kg/m³ at rest, 0 = the fluid's; other ones make a mixture
-    float viscosity = -1;                       // Pa s, -1 = the fluid's
-    StartPressure pressure = StartPressure::None;   // where a field has its own, that is added
-    std::string name{};                         // of its fluid, in the legend; "" = by its density
-    float mass = 0;                             // kg, of a particle of a file; 0 = its column says
+    Vec3 velocity{0, 0, 0};        // m/s; for a field its amplitude is the length
+    Field field = Field::Uniform;  // of velocity at the start
+    float restDensity = 0;         // kg/m³ at rest, 0 = the fluid's; other ones make a mixture
+    float viscosity = -1;          // Pa s, -1 = the fluid's
+    StartPressure pressure = StartPressure::None;  // where a field has its own, that is added
+    std::string name{};  // of its fluid, in the legend; "" = by its density
+    float mass = 0;      // kg, of a particle of a file; 0 = its column says
 };
 
 // Where a solid is at one time, relative to its place in the scene.
-struct Keyframe { float time = 0; Vec3 offset; float turn = 0; bool operator==(const Keyframe&) const = default; };   // s, m, degrees
+struct Keyframe {
+    float time = 0;
+    Vec3 offset;
+    float turn = 0;
+    bool operator==(const Keyframe&) const = default;
+};  // s, m, degrees
 using Keyframes = std::vector<Keyframe>;
 
-// An obstacle: fluid flows around it. It stands still, goes on and on with `velocity` and `spin`, or moves as its
-// keyframes say, on straight lines between them. With a density it floats: that is how it moves at the start, and fluid, gravity and
-// what it runs into do the rest.
+// An obstacle: fluid flows around it. It stands still, goes on and on with `velocity` and `spin`,
+// or moves as its keyframes say, on straight lines between them. With a density it floats: that is
+// how it moves at the start, and fluid, gravity and what it runs into do the rest.
 struct Solid : Form {
-    std::string name;                           // of its columns in time series; "" = solid0, solid1, ...
-    Vec3 velocity{0, 0, 0};                     // m/s
-    float spin = 0;                             // degrees/s
-    Axis spinAxis = Axis::Z;                    // through its middle; keyframes turn about it too
-    Keyframes keyframes;                        // in the order of their times
-    std::string motion;                         // a CSV that becomes the keyframes when the scene is read
-    float density = 0;                          // kg/m³ of one that floats, 0 = it moves as prescribed
-    float friction = 0.3f;                      // Coulomb's coefficient where one that floats touches walls and other solids
+    std::string name;         // of its columns in time series; "" = solid0, solid1, ...
+    Vec3 velocity{0, 0, 0};   // m/s
+    float spin = 0;           // degrees/s
+    Axis spinAxis = Axis::Z;  // through its middle; keyframes turn about it too
+    Keyframes keyframes;      // in the order of their times
+    std::string motion;       // a CSV that becomes the keyframes when the scene is read
+    float density = 0;        // kg/m³ of one that floats, 0 = it moves as prescribed
+    float friction =
+        0.3f;  // Coulomb's coefficient where one that floats touches walls and other solids
     bool floats() const { return density > 0; }
     bool moves() const { return !keyframes.empty() || velocity != Vec3{} || spin != 0 || floats(); }
 };
 
-// An elastic object: particles on a lattice, and bonds between them that are springs. It meets fluid, itself and other objects by contact forces. A block
-// reads min and max, a sheet too: it is flat along the axis on which they are the same. A tube, open at both ends, reads center, radius, height and axis,
-// a shell, the triangles of a file, path, scale and offset.
+// An elastic object: particles on a lattice, and bonds between them that are springs. It meets
+// fluid, itself and other objects by contact forces. A block reads min and max, a sheet too: it is
+// flat along the axis on which they are the same. A tube, open at both ends, reads center, radius,
+// height and axis, a shell, the triangles of a file, path, scale and offset.
 struct Object {
     ObjectShape shape = ObjectShape::Block;
-    Vec3 min{0, 0, 0}, max{0.5f, 0.5f, 0.5f};   // m
-    Vec3 center{0.5f, 0.5f, 0.5f};              // m
-    float radius = 0.1f;                        // m, to the middle of the wall
-    float height = 0.5f;                        // m
+    Vec3 min{0, 0, 0}, max{0.5f, 0.5f, 0.5f};  // m
+    Vec3 center{0.5f, 0.5f, 0.5f};             // m
+    float radius = 0.1f;                       // m, to the middle of the wall
+    float height = 0.5f;                       // m
     Axis axis = Axis::X;
-    std::string path{};                         // of a mesh, beside the scene file when relative
-    float scale = 1;                            // m per unit of that
-    Vec3d offset{0, 0, 0};                      // m, of its origin
-    float thickness = 0.01f;                    // m, of a wall: one layer of particles, or more where a sheet or a tube is thicker than a spacing
-    float spacing = 0;                          // m, of its particles, 0 = simulation.spacing
-    float density = 1000;                       // kg/m³
-    float youngsModulus = 1e5f;                 // Pa
-    float damping = 0.1f;                       // of bonds, share of the critical one
-    float breakingStrain = 0;                   // at which bonds break, 0 = never
-    Vec3 velocity{0, 0, 0};                     // m/s, at the start
+    std::string path{};          // of a mesh, beside the scene file when relative
+    float scale = 1;             // m per unit of that
+    Vec3d offset{0, 0, 0};       // m, of its origin
+    float thickness = 0.01f;     // m, of a wall: one layer of particles, or more where a sheet or a
+                                 // tube is thicker than a spacing
+    float spacing = 0;           // m, of its particles, 0 = simulation.spacing
+    float density = 1000;        // kg/m³
+    float youngsModulus = 1e5f;  // Pa
+    float damping = 0.1f;        // of bonds, share of the critical one
+    float breakingStrain = 0;    // at which bonds break, 0 = never
+    Vec3 velocity{0, 0, 0};      // m/s, at the start
 };
 
-// Holds those of the objects' particles that are in its box at the start: where they are, or it moves them as its keyframes say.
+// Holds those of the objects' particles that are in its box at the start: where they are, or it
+// moves them as its keyframes say.
 struct Grip {
-    Vec3 min{0, 0, 0}, max{0.1f, 0.1f, 0.1f};   // m
-    Vec3 velocity{0, 0, 0};                     // m/s, with which it goes on and on
+    Vec3 min{0, 0, 0}, max{0.1f, 0.1f, 0.1f};  // m
+    Vec3 velocity{0, 0, 0};                    // m/s, with which it goes on and on
     Keyframes keyframes;
 };
 
 // A blade: breaks the bonds whose middles are in its box at that time.
 struct Cut {
-    float time = 0;                             // s
-    Vec3 min{0, 0, 0}, max{0.1f, 0.1f, 0.1f};   // m
+    float time = 0;                            // s
+    Vec3 min{0, 0, 0}, max{0.1f, 0.1f, 0.1f};  // m
 };
 
 // Contact of fluid with objects, and of objects with each other (discrete element method).
 struct Contact {
-    float influence = 1.5f;                     // fluid is kept so many times the sum of two particles' radii away
-    float stiffness = 0;                        // N/m, 0 = what the time step bears; in 2D N/m/m
-    float steepness = 2;                        // the spring is exp(steepness (1 - distance / reach)) times as stiff
-    float damping = 0.1f;                       // share of the critical one
-    float shear = 0.1f;                         // the same, along the surface
+    float influence = 1.5f;  // fluid is kept so many times the sum of two particles' radii away
+    float stiffness = 0;     // N/m, 0 = what the time step bears; in 2D N/m/m
+    float steepness = 2;     // the spring is exp(steepness (1 - distance / reach)) times as stiff
+    float damping = 0.1f;    // share of the critical one
+    float shear = 0.1f;      // the same, along the surface
 };
 
 struct Window {
     std::string title = "Spindrift";
-    int width = 1280, height = 800;             // logical pixels
-    float pointSize = 0;                        // px: particles are never drawn smaller than this diameter
-    int samples = 4;                            // multisampling, 1 = off
-    float interfaceScale = 0;                   // of text and panel, 0 = as the display asks for
+    int width = 1280, height = 800;  // logical pixels
+    float pointSize = 0;             // px: particles are never drawn smaller than this diameter
+    int samples = 4;                 // multisampling, 1 = off
+    float interfaceScale = 0;        // of text and panel, 0 = as the display asks for
 };
 
 struct Compute {
     Backend backend = Backend::Auto;
     Precision precision = Precision::Float;
     Simd simd = Simd::Auto;
-    int threads = 0;                            // 0 = all cores
-    int device = -1;                            // number of the GPU; -1 = the one that draws, else the first
-    float skin = 0.1f;                          // neighbour lists reach this share of R further and are kept so long
-    int steps = 0;                              // 0 = until closed (window) or until output.time
+    int threads = 0;    // 0 = all cores
+    int device = -1;    // number of the GPU; -1 = the one that draws, else the first
+    float skin = 0.1f;  // neighbour lists reach this share of R further and are kept so long
+    int steps = 0;      // 0 = until closed (window) or until output.time
 };
 
 struct SimulationKnobs {
     Formulation formulation = Formulation::Wcsph;
-    int dimensions = 3;                         // 2: one layer of particles in the middle of the domain's z
+    int dimensions = 3;  // 2: one layer of particles in the middle of the domain's z
     Kernel kernel = Kernel::WendlandC2;
-    float spacing = 0.02f;                      // m, initial distance of particles
-    float support = 2.6f;                       // support radius R / spacing
-    PressureForm pressureForm = PressureForm::Squares;   // of the forces between two particles
-    Vec3 gravity{0, -9.81f, 0};                 // m/s²
-    float gravityRamp = 0;                      // s in which gravity grows from 0, 0 = there at once
-    float centralRate = 0;                      // 1/s, Omega of a force -Omega^2 r towards the domain's centre
-    StartPlaces placement = StartPlaces::Lattice;   // of the particles in the bodies
-    float jitter = 0;                           // random displacement of the start's lattice / spacing, each axis
-    int seed = 1;                               // of the jitter, and of relaxed places
-    float accelerationLimit = 0;                // m/s², caps the pressure acceleration; 0 = off
+    float spacing = 0.02f;                              // m, initial distance of particles
+    float support = 2.6f;                               // support radius R / spacing
+    PressureForm pressureForm = PressureForm::Squares;  // of the forces between two particles
+    Vec3 gravity{0, -9.81f, 0};                         // m/s²
+    float gravityRamp = 0;  // s in which gravity grows from 0, 0 = there at once
+    float centralRate = 0;  // 1/s, Omega of a force -Omega^2 r towards the domain's centre
+    StartPlaces placement = StartPlaces::Lattice;  // of the particles in the bodies
+    float jitter = 0;             // random displacement of the start's lattice / spacing, each axis
+    int seed = 1;                 // of the jitter, and of relaxed places
+    float accelerationLimit = 0;  // m/s², caps the pressure acceleration; 0 = off
 };
 
 struct Domain {
-    Vec3 min{0, 0, 0}, max{1.6f, 0.9f, 0.6f};   // m
-    bool periodicX = false, periodicY = false, periodicZ = false;   // who leaves on one side enters on the other
+    Vec3 min{0, 0, 0}, max{1.6f, 0.9f, 0.6f};  // m
+    bool periodicX = false, periodicY = false,
+         periodicZ = false;  // who leaves on one side enters on the other
     Vec3d size() const { return toDouble(max) - toDouble(min); }
-    bool periodic(int axis) const { return axis == 0 ? periodicX : axis == 1 ? periodicY : periodicZ; }
+    bool periodic(int axis) const {
+        return axis == 0 ? periodicX : axis == 1 ? periodicY : periodicZ;
+    }
 };
 
 struct Walls {
     WallKind kind = WallKind::Particles;
-    float restitution = 0;                      // share of the normal velocity kept on impact with the domain box
-    float friction = 0;                         // share of the tangential velocity lost on impact
-    float margin = 0;                           // the box is this share of its size smaller on each side
-    Face movingFace = Face::None;               // slides with `velocity`, and takes fluid along that sticks to it
-    Vec3 velocity{0, 0, 0};                     // m/s
+    float restitution = 0;  // share of the normal velocity kept on impact with the domain box
+    float friction = 0;     // share of the tangential velocity lost on impact
+    float margin = 0;       // the box is this share of its size smaller on each side
+    Face movingFace =
+        Face::None;          // slides with `velocity`, and takes fluid along that sticks to it
+    Vec3 velocity{0, 0, 0};  // m/s
 };
 
 struct Fluid {
-    float restDensity = 1000;                   // kg/m³
-    float particleMass = 0;                     // kg, 0 = rest density x spacing^3; 2D: kg/m, dx^2
-    float soundSpeed = 0;                       // m/s, 0 = speed_ratio x the expected largest speed
-    float speedRatio = 10;                      // sound speed / expected largest speed
-    float backgroundPressure = 0;               // Pa, of fluid at rest density
-    float surfaceTension = 0;                   // N/m
-    float velocityTransfer = 0;                 // 1/s, at which neighbours take over each other's velocity
-    float buoyancy = 0;                         // of who is lighter than its surroundings, in units of gravity
-    float dissipation = 0;                      // 1/s, at which motion fades
-    float airDensity = 0;                       // kg/m³, of the air that slows drops; 0 = none
-    float dragCoefficient = 0.47f;              // of the spheres as which it slows them
-    Vec3 wind{0, 0, 0};                         // m/s, of that air
-    float viscosity = 0.001f;                   // Pa s, dynamic (Morris 1997); classic: its own coefficient
-    float artificialViscosity = 0.05f;          // alpha of Monaghan 1992
-    float densityDiffusion = 0.1f;              // delta of Molteni & Colagrossi 2009, where density is carried
-    float shifting = 1;                         // share of Sun 2019's particle shifting, delta_plus and transport_velocity
+    float restDensity = 1000;       // kg/m³
+    float particleMass = 0;         // kg, 0 = rest density x spacing^3; 2D: kg/m, dx^2
+    float soundSpeed = 0;           // m/s, 0 = speed_ratio x the expected largest speed
+    float speedRatio = 10;          // sound speed / expected largest speed
+    float backgroundPressure = 0;   // Pa, of fluid at rest density
+    float surfaceTension = 0;       // N/m
+    float velocityTransfer = 0;     // 1/s, at which neighbours take over each other's velocity
+    float buoyancy = 0;             // of who is lighter than its surroundings, in units of gravity
+    float dissipation = 0;          // 1/s, at which motion fades
+    float airDensity = 0;           // kg/m³, of the air that slows drops; 0 = none
+    float dragCoefficient = 0.47f;  // of the spheres as which it slows them
+    Vec3 wind{0, 0, 0};             // m/s, of that air
+    float viscosity = 0.001f;       // Pa s, dynamic (Morris 1997); classic: its own coefficient
+    float artificialViscosity = 0.05f;  // alpha of Monaghan 1992
+    float densityDiffusion = 0.1f;  // delta of Molteni & Colagrossi 2009, where density is carried
+    float shifting = 1;  // share of Sun 2019's particle shifting, delta_plus and transport_velocity
     EquationOfState equationOfState = EquationOfState::Tait;
-    int gamma = 7;                              // Tait exponent
-    float stiffness = 0;                        // Pa, pressure scale k of p = k((rho/rho0)^gamma - 1); 0 = rho0 c^2/gamma
+    int gamma = 7;        // Tait exponent
+    float stiffness = 0;  // Pa, pressure scale k of p = k((rho/rho0)^gamma - 1); 0 = rho0 c^2/gamma
     std::vector<Body> bodies{Body{{.max{0.5f, 0.54f, 0.6f}}}};
 };
 
 struct TimeKnobs {
     TimeMode mode = TimeMode::Cfl;
     Integrator integrator = Integrator::SymplecticEuler;
-    float step = 0.0005f;                       // s, used by fixed
-    float cfl = 0.4f;                           // Courant number: dt <= cfl h / (c + |v|), h = R/2
-    float maxStep = 0.01f;                      // s
-    float restSpeed = 0.0001f;                  // of local steps: share of the speed of sound below which fluid may rest
-    int retries = 3;                            // with half the step from an earlier state, before a run in trouble is given up
+    float step = 0.0005f;   // s, used by fixed
+    float cfl = 0.4f;       // Courant number: dt <= cfl h / (c + |v|), h = R/2
+    float maxStep = 0.01f;  // s
+    float restSpeed =
+        0.0001f;  // of local steps: share of the speed of sound below which fluid may rest
+    int retries =
+        3;  // with half the step from an earlier state, before a run in trouble is given up
 };
 
 struct Camera {
-    float yaw = 35, pitch = 20;                 // degrees
-    float distance = 0;                         // m, 0 = fits the domain
-    float fieldOfView = 40;                     // degrees, vertical
-    bool automaticTarget = true;                // looks at the domain's centre
-    Vec3 target{0, 0, 0};                       // m, used when automatic_target is off
+    float yaw = 35, pitch = 20;   // degrees
+    float distance = 0;           // m, 0 = fits the domain
+    float fieldOfView = 40;       // degrees, vertical
+    bool automaticTarget = true;  // looks at the domain's centre
+    Vec3 target{0, 0, 0};         // m, used when automatic_target is off
 };
 
 // What the mouse does to the fluid around it.
 struct Stirrer {
     StirMode mode = StirMode::Drag;
-    float strength = 1;                         // of the hold that it has on the fluid
-    float radius = 0;                           // m, 0 = an eighth of the domain's shortest side
+    float strength = 1;  // of the hold that it has on the fluid
+    float radius = 0;    // m, 0 = an eighth of the domain's shortest side
 };
 
 struct View {
     ColorBy colorBy = ColorBy::Velocity;
     ColorMap colorMap = ColorMap::Coolwarm;
     RangeMode range = RangeMode::Run;
-    float rangeMin = 0, rangeMax = 1;           // in the unit of the coloured quantity, used by fixed
-    bool showWalls = false;                     // draws boundary particles
-    bool solidParticles = false;                // draws particles of solids instead of their shapes
+    float rangeMin = 0, rangeMax = 1;  // in the unit of the coloured quantity, used by fixed
+    bool showWalls = false;            // draws boundary particles
+    bool solidParticles = false;       // draws particles of solids instead of their shapes
     bool showOutline = true, showGround = true;
-    Up up = Up::Auto;                           // the direction that is up in pictures
-    float particleScale = 1;                    // drawn diameter / spacing
-    float speed = 1;                            // simulated / wall time that the window aims at
+    Up up = Up::Auto;         // the direction that is up in pictures
+    float particleScale = 1;  // drawn diameter / spacing
+    float speed = 1;          // simulated / wall time that the window aims at
     Stirrer stir;
     Camera camera;
 };
 
-// A gauge whose readings are columns of the time series. A point reads position and radius, a line from, to and count, a height
-// position and axis, a front axis. Points lie in the particles' layer in two dimensions.
+// A gauge whose readings are columns of the time series. A point reads position and radius, a line
+// from, to and count, a height position and axis, a front axis. Points lie in the particles' layer
+// in two dimensions.
 struct Probe {
     ProbeKind kind = ProbeKind::Point;
-    std::string name = "probe";                 // begins the columns' names
-    Vec3 position{0, 0, 0};                     // m
-    float radius = 0;                           // m, 0 = a point
-    Vec3 from{0, 0, 0}, to{1, 0, 0};            // m
-    int count = 11;                             // points on a line, both ends among them
-    Axis axis = Axis::Y;                        // along which a height or a front is read
-    Order order = Order::Mean;                  // of the interpolation between particles
+    std::string name = "probe";       // begins the columns' names
+    Vec3 position{0, 0, 0};           // m
+    float radius = 0;                 // m, 0 = a point
+    Vec3 from{0, 0, 0}, to{1, 0, 0};  // m
+    int count = 11;                   // points on a line, both ends among them
+    Axis axis = Axis::Y;              // along which a height or a front is read
+    Order order = Order::Mean;        // of the interpolation between particles
 };
 
 struct Output {
     bool headless = false;
-    float time = 0;                             // s, 0 = by steps
-    std::string screenshot;                     // PNG path
-    std::string frames;                         // folder of a PNG sequence
-    float fps = 60;                             // 1/s of simulated time
-    std::string csv, json;                      // time series; "-" = standard output
-    std::string checkpoint;                     // HDF5 path: a run that can go on
-    float checkpointEvery = 0;                  // s of simulated time, 0 = at the end only
-    std::string hdf5;                           // the time series as an HDF5 file
-    float sampleEvery = 0;                      // s of simulated time between rows of the series, 0 = with the frames, by fps
-    std::string particles;                      // CSV or HDF5 path: the last state, which a body of shape file can begin with
-    bool strict = false;                        // what is outside the validity of the method is an error
+    float time = 0;             // s, 0 = by steps
+    std::string screenshot;     // PNG path
+    std::string frames;         // folder of a PNG sequence
+    float fps = 60;             // 1/s of simulated time
+    std::string csv, json;      // time series; "-" = standard output
+    std::string checkpoint;     // HDF5 path: a run that can go on
+    float checkpointEvery = 0;  // s of simulated time, 0 = at the end only
+    std::string hdf5;           // the time series as an HDF5 file
+    float sampleEvery =
+        0;  // s of simulated time between rows of the series, 0 = with the frames, by fps
+    std::string
+        particles;  // CSV or HDF5 path: the last state, which a body of shape file can begin with
+    bool strict = false;  // what is outside the validity of the method is an error
     std::vector<Probe> probes;
 };
 
@@ -287,13 +305,14 @@ struct Scene {
 };
 
 // Derived values, so that every reader computes them the same way.
-float supportRadius(const Scene&);              // m
+float supportRadius(const Scene&);  // m
 // What has a depth is measured per metre of it in two dimensions: masses in kg/m, forces in N/m,
 // energies in J/m. This is the unit's name there.
 std::string perDepth(const std::string& unit, int dimensions);
-double particleVolume(const Scene&);            // m^3; in two dimensions m^2
-float particleMass(const Scene&);               // kg; in two dimensions kg/m
-// Whether density follows the continuity equation from step to step, instead of being summed up anew.
+double particleVolume(const Scene&);  // m^3; in two dimensions m^2
+float particleMass(const Scene&);     // kg; in two dimensions kg/m
+// Whether density follows the continuity equation from step to step, instead of being summed up
+// anew.
 bool carriesDensity(const Scene&);
 // Whether there is velocity transfer or buoyancy.
 bool mixes(const Scene&);

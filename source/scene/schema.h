@@ -26,7 +26,8 @@ constexpr auto enumNames(Formulation) {
     return std::array{"wcsph", "delta_sph", "delta_plus", "transport_velocity", "classic"};
 }
 constexpr auto enumNames(Kernel) {
-    return std::array{"wendland_c2", "cubic_spline", "wendland_c4", "wendland_c6", "quintic_spline", "mueller"};
+    return std::array{"wendland_c2", "cubic_spline",   "wendland_c4",
+                      "wendland_c6", "quintic_spline", "mueller"};
 }
 constexpr auto enumNames(PressureForm) { return std::array{"squares", "mean"}; }
 constexpr auto enumNames(EquationOfState) { return std::array{"tait", "linear"}; }
@@ -35,13 +36,14 @@ constexpr auto enumNames(TimeMode) { return std::array{"fixed", "cfl", "local"};
 constexpr auto enumNames(Integrator) {
     return std::array{"symplectic_euler", "velocity_verlet", "predictor_corrector", "split"};
 }
-constexpr auto enumNames(Shape) { return std::array{"block", "sphere", "cylinder", "wedge", "plane", "mesh", "file"}; }
-constexpr auto enumNames(Axis) { return std::array{"x", "y", "z"}; }
-constexpr auto enumNames(Up) {
-    return std::array{"auto", "x", "y", "z", "-x", "-y", "-z"};
+constexpr auto enumNames(Shape) {
+    return std::array{"block", "sphere", "cylinder", "wedge", "plane", "mesh", "file"};
 }
+constexpr auto enumNames(Axis) { return std::array{"x", "y", "z"}; }
+constexpr auto enumNames(Up) { return std::array{"auto", "x", "y", "z", "-x", "-y", "-z"}; }
 constexpr auto enumNames(ColorBy) {
-    return std::array{"plain", "velocity", "pressure", "density", "acceleration", "id", "fluid", "surface"};
+    return std::array{"plain",        "velocity", "pressure", "density",
+                      "acceleration", "id",       "fluid",    "surface"};
 }
 constexpr auto enumNames(ColorMap) { return std::array{"viridis", "cividis", "turbo", "coolwarm"}; }
 constexpr auto enumNames(Field) {
@@ -60,9 +62,9 @@ constexpr auto enumNames(ProbeKind) { return std::array{"point", "line", "height
 constexpr auto enumNames(ObjectShape) { return std::array{"block", "sheet", "tube", "shell"}; }
 constexpr auto enumNames(Order) { return std::array{"mean", "linear"}; }
 
-// Which knobs a shape has depends on which it is; that is visited first, so that a reader has set it before the others are chosen.
-template <class F, class Visitor>
-void visitForm(F& f, const std::string& at, Visitor&& visit) {
+// Which knobs a shape has depends on which it is; that is visited first, so that a reader has set
+// it before the others are chosen.
+template <class F, class Visitor> void visitForm(F& f, const std::string& at, Visitor&& visit) {
     visit(
         at + ".shape", f.shape,
         Knob{
@@ -102,31 +104,45 @@ template <class B, class Visitor>
 requires std::is_same_v<std::remove_const_t<B>, Body>
 void visitMember(B& b, const std::string& at, Visitor&& visit) {
     visitForm(b, at, visit);
-    visit(at + ".name", b.name, 
-          Knob{"", 0, 0, "of its fluid, in the legend of a mixture; without one its density names it",
-               Restart});
+    visit(
+        at + ".name", b.name,
+        Knob{"", 0, 0, "of its fluid, in the legend of a mixture; without one its density names it",
+             Restart});
     visit(at + ".rest_density", b.restDensity,
-          Knob{"kg/m³", 0, 1e5f, "of this body's fluid, 0 = fluid.rest_density; with another one fluids lie above each other", Restart});
-    visit(at + ".viscosity", b.viscosity, Knob{"Pa s", -1, 1000, "of this body's fluid, -1 = fluid.viscosity", Restart});
+          Knob{"kg/m³", 0, 1e5f,
+               "of this body's fluid, 0 = fluid.rest_density; with another one fluids lie above "
+               "each other",
+               Restart});
+    visit(at + ".viscosity", b.viscosity,
+          Knob{"Pa s", -1, 1000, "of this body's fluid, -1 = fluid.viscosity", Restart});
     if (b.shape == Shape::File) {
         visit(at + ".path", b.path,
               Knob{"", 0, 0,
-                   "CSV with a header, or HDF5: x, y, z, and if there are any vx, vy, vz, rho, p, mass; all of them are taken, also inside "
-                   "other bodies. Without mass each has that of spacing^3. As output.particles writes it; a relative path starts at the scene file",
+                   "CSV with a header, or HDF5: x, y, z, and if there are any vx, vy, vz, rho, p, "
+                   "mass; all of them are taken, also inside "
+                   "other bodies. Without mass each has that of spacing^3. As output.particles "
+                   "writes it; a relative path starts at the scene file",
                    Restart});
         visit(at + ".mass", b.mass,
-              Knob{"kg", 0, 1e9f, "of each particle, in two dimensions of a metre of depth; 0 = as the file says", Restart});
+              Knob{"kg", 0, 1e9f,
+                   "of each particle, in two dimensions of a metre of depth; 0 = as the file says",
+                   Restart});
         return;
     }
     visit(at + ".velocity", b.velocity, Knob{"m/s", -1e3f, 1e3f, "initial velocity", Restart});
-    visit(at + ".field", b.field,
-          Knob{"", 0, 0,
-               "velocity at the start: the same everywhere, or a flow of that amplitude: Taylor-Green "
-               "vortices as wide as the domain; a sound wave as long as the domain that travels along x; stretching along x, rotation or shear in x and y, "
-               "about the body's centre, with that speed at the end of its largest half side",
-               Restart});
+    visit(
+        at + ".field", b.field,
+        Knob{
+            "", 0, 0,
+            "velocity at the start: the same everywhere, or a flow of that amplitude: Taylor-Green "
+            "vortices as wide as the domain; a sound wave as long as the domain that travels along "
+            "x; stretching along x, rotation or shear in x and y, "
+            "about the body's centre, with that speed at the end of its largest half side",
+            Restart});
     visit(at + ".pressure", b.pressure,
-          Knob{"", 0, 0, "at the start, where density is carried: none, or of the column above in this body", Restart});
+          Knob{"", 0, 0,
+               "at the start, where density is carried: none, or of the column above in this body",
+               Restart});
 }
 template <class S, class Visitor>
 requires std::is_same_v<std::remove_const_t<S>, Solid>
@@ -137,9 +153,12 @@ void visitMember(S& s, const std::string& at, Visitor&& visit) {
               Knob{"", -1e4f, 1e4f, "of a plane, to the side where fluid is; of any length",
                    Restart});
     visit(at + ".name", s.name, Knob{"", 0, 0, "of its columns in time series", Restart});
-    visit(at + ".velocity", s.velocity, Knob{"m/s", -1e3f, 1e3f, "with which it goes on and on; of one that floats at the start", Restart});
+    visit(at + ".velocity", s.velocity,
+          Knob{"m/s", -1e3f, 1e3f, "with which it goes on and on; of one that floats at the start",
+               Restart});
     visit(at + ".spin", s.spin, Knob{"degrees/s", -1e5f, 1e5f, "turns about its middle", Restart});
-    visit(at + ".spin_axis", s.spinAxis, Knob{"", 0, 0, "direction of the axis that it turns about", Restart});
+    visit(at + ".spin_axis", s.spinAxis,
+          Knob{"", 0, 0, "direction of the axis that it turns about", Restart});
     visit(at + ".keyframes", s.keyframes,
           Knob{"", -1e7f, 1e7f,
                "where it is when: [[t, x, y, z], ...] or [[t, x, y, z, turn], ...] in s, m and "
@@ -152,14 +171,25 @@ void visitMember(S& s, const std::string& at, Visitor&& visit) {
                "s, m and degrees, or units of the header, as x [mm]",
                Restart});
     visit(at + ".density", s.density,
-          Knob{"kg/m³", 0, 1e5f, "lets it float: fluid, gravity and what it touches move it, velocity and spin are those at the start; 0 = it moves as prescribed", Restart});
-    visit(at + ".friction", s.friction, Knob{"", 0, 10, "of what floats: Coulomb's coefficient where it touches walls and other solids; the lower one counts", Restart});
+          Knob{"kg/m³", 0, 1e5f,
+               "lets it float: fluid, gravity and what it touches move it, velocity and spin are "
+               "those at the start; 0 = it moves as prescribed",
+               Restart});
+    visit(at + ".friction", s.friction,
+          Knob{"", 0, 10,
+               "of what floats: Coulomb's coefficient where it touches walls and other solids; the "
+               "lower one counts",
+               Restart});
 }
 
 template <class O, class Visitor>
 requires std::is_same_v<std::remove_const_t<O>, Object>
 void visitMember(O& o, const std::string& at, Visitor&& visit) {
-    visit(at + ".shape", o.shape, Knob{"", 0, 0, "block, sheet (flat along the axis on which min and max are the same), tube, open at both ends, or shell: triangles of a file", Restart});
+    visit(at + ".shape", o.shape,
+          Knob{"", 0, 0,
+               "block, sheet (flat along the axis on which min and max are the same), tube, open "
+               "at both ends, or shell: triangles of a file",
+               Restart});
     if (o.shape == ObjectShape::Tube) {
         visit(at + ".center", o.center, Knob{"m", -1e7f, 1e7f, "centre", Restart});
         visit(at + ".radius", o.radius,
@@ -187,9 +217,13 @@ void visitMember(O& o, const std::string& at, Visitor&& visit) {
     visit(at + ".spacing", o.spacing,
           Knob{"m", 0, 1e4f, "of its particles, 0 = simulation.spacing", Restart});
     visit(at + ".density", o.density, Knob{"kg/m³", 1e-3f, 1e5f, "of what it is made of", Restart});
-    visit(at + ".youngs_modulus", o.youngsModulus, Knob{"Pa", 0, 1e12f, "how stiff it is; Poisson's ratio is 1/4, of a single layer 1/3", Restart});
-    visit(at + ".damping", o.damping, Knob{"", 0, 2, "of its bonds, share of the critical one", Restart});
-    visit(at + ".breaking_strain", o.breakingStrain, Knob{"", 0, 1e3f, "at which bonds break for good, 0 = never", Restart});
+    visit(at + ".youngs_modulus", o.youngsModulus,
+          Knob{"Pa", 0, 1e12f, "how stiff it is; Poisson's ratio is 1/4, of a single layer 1/3",
+               Restart});
+    visit(at + ".damping", o.damping,
+          Knob{"", 0, 2, "of its bonds, share of the critical one", Restart});
+    visit(at + ".breaking_strain", o.breakingStrain,
+          Knob{"", 0, 1e3f, "at which bonds break for good, 0 = never", Restart});
     visit(at + ".velocity", o.velocity, Knob{"m/s", -1e3f, 1e3f, "initial velocity", Restart});
 }
 template <class G, class Visitor>
@@ -197,7 +231,8 @@ requires std::is_same_v<std::remove_const_t<G>, Grip>
 void visitMember(G& g, const std::string& at, Visitor&& visit) {
     visit(at + ".min", g.min, Knob{"m", -1e7f, 1e7f, "lower corner", Restart});
     visit(at + ".max", g.max, Knob{"m", -1e7f, 1e7f, "upper corner", Restart});
-    visit(at + ".velocity", g.velocity, Knob{"m/s", -1e3f, 1e3f, "with which it goes on and on", Restart});
+    visit(at + ".velocity", g.velocity,
+          Knob{"m/s", -1e3f, 1e3f, "with which it goes on and on", Restart});
     visit(at + ".keyframes", g.keyframes,
           Knob{"", -1e7f, 1e7f,
                "where it is when, relative to its place here: [[t, x, y, z], ...] in s and m",
@@ -216,7 +251,8 @@ requires std::is_same_v<std::remove_const_t<P>, Probe>
 void visitMember(P& p, const std::string& at, Visitor&& visit) {
     visit(at + ".kind", p.kind,
           Knob{"", 0, 0,
-               "point and line: pressure, density and velocity of the fluid there; height: of the water, as a gauge "
+               "point and line: pressure, density and velocity of the fluid there; height: of the "
+               "water, as a gauge "
                "along an axis sees it; front: how far 99.5 % of the fluid have come along an axis",
                Restart});
     const bool interpolates = p.kind == ProbeKind::Point || p.kind == ProbeKind::Line;
@@ -236,16 +272,19 @@ void visitMember(P& p, const std::string& at, Visitor&& visit) {
         visit(at + ".to", p.to, Knob{"m", -1e7f, 1e7f, "last point", Restart});
         visit(at + ".count", p.count, Knob{"", 2, 10000, "points, evenly spaced", Restart});
     }
-    if (!interpolates) visit(at + ".axis", p.axis, Knob{"", 0, 0, "direction in which it reads", Restart});
+    if (!interpolates)
+        visit(at + ".axis", p.axis, Knob{"", 0, 0, "direction in which it reads", Restart});
     if (interpolates)
         visit(at + ".order", p.order,
               Knob{"", 0, 0,
-                   "mean: weighted mean of the particles near, never beyond their values: for splashes and impacts; linear: "
+                   "mean: weighted mean of the particles near, never beyond their values: for "
+                   "splashes and impacts; linear: "
                    "least squares, exact for linear fields up to the wall: for calm fluid",
                    Restart});
 }
 
-// Calls visit(path, list, what) for each list of objects that a scene has. The members' knobs are visitKnobs'.
+// Calls visit(path, list, what) for each list of objects that a scene has. The members' knobs are
+// visitKnobs'.
 template <class S, class Visitor>
 requires std::is_same_v<std::remove_const_t<S>, Scene>
 void visitLists(S& scene, Visitor&& visit) {
@@ -254,7 +293,8 @@ void visitLists(S& scene, Visitor&& visit) {
     visit("grips", scene.grips, "what holds or moves parts of objects");
     visit("cuts", scene.cuts, "blades that cut objects");
     visit("fluid.bodies", scene.fluid.bodies, "bodies of fluid");
-    visit("output.probes", scene.output.probes, "gauges whose readings are columns of the time series");
+    visit("output.probes", scene.output.probes,
+          "gauges whose readings are columns of the time series");
 }
 
 // One member for each shape, or kind: together they have every knob of their list.
@@ -262,7 +302,8 @@ inline Shape& kindOf(Form& f) { return f.shape; }
 inline ProbeKind& kindOf(Probe& p) { return p.kind; }
 inline ObjectShape& kindOf(Object& o) { return o.shape; }
 template <class Member> std::vector<Member> oneOfEachKind() {
-    if constexpr (!requires(Member& m) { kindOf(m); }) return std::vector<Member>(1);
+    if constexpr (!requires(Member & m) { kindOf(m); })
+        return std::vector<Member>(1);
     else {
         using Kind = std::decay_t<decltype(kindOf(std::declval<Member&>()))>;
         std::vector<Member> members(enumNames(Kind()).size());
@@ -275,22 +316,27 @@ namespace schema {
 
 template <class S, class Visitor>
 void visitMembers(S& list, const std::string& path, Visitor&& visit) {
-    for (size_t i = 0; i < list.size(); ++i) visitMember(list[i], path + "[" + std::to_string(i) + "]", visit);
+    for (size_t i = 0; i < list.size(); ++i)
+        visitMember(list[i], path + "[" + std::to_string(i) + "]", visit);
 }
 
-template <class C, class Visitor>
-void visitContact(C& c, Visitor&& visit) {
-    visit("contact.influence", c.influence, Knob{"", 0.5f, 3, "of objects: fluid is kept so many times the sum of two particles' radii away", Restart});
+template <class C, class Visitor> void visitContact(C& c, Visitor&& visit) {
+    visit("contact.influence", c.influence,
+          Knob{"", 0.5f, 3,
+               "of objects: fluid is kept so many times the sum of two particles' radii away",
+               Restart});
     visit("contact.stiffness", c.stiffness,
-          Knob{"N/m", 0, 1e9f, "of the spring between two particles, 0 = what the time step bears; "
-                               "in two dimensions for each metre of depth"});
-    visit("contact.steepness", c.steepness, Knob{"", 0, 4, "the spring is exp(steepness (1 - distance / reach)) times as stiff"});
-    visit("contact.damping", c.damping, Knob{"", 0, 2, "of contacts, share of the critical one; none where a bond is broken"});
+          Knob{"N/m", 0, 1e9f,
+               "of the spring between two particles, 0 = what the time step bears; "
+               "in two dimensions for each metre of depth"});
+    visit("contact.steepness", c.steepness,
+          Knob{"", 0, 4, "the spring is exp(steepness (1 - distance / reach)) times as stiff"});
+    visit("contact.damping", c.damping,
+          Knob{"", 0, 2, "of contacts, share of the critical one; none where a bond is broken"});
     visit("contact.shear", c.shear, Knob{"", 0, 2, "the same, of motion along the surface"});
 }
 
-template <class S, class Visitor>
-void visitProgram(S& s, Visitor&& visit) {
+template <class S, class Visitor> void visitProgram(S& s, Visitor&& visit) {
     visit("version", s.version, Knob{"", 2, 2, "layout of the file", Restart});
     visit("name", s.name, Knob{"", 0, 0, "what the scene is called", Restart});
 
@@ -322,38 +368,53 @@ void visitProgram(S& s, Visitor&& visit) {
           Knob{"", 0, 1e9f, "time steps to run, 0 = until closed or until output.time", Restart});
 }
 
-template <class S, class Visitor>
-void visitPhysics(S& s, Visitor&& visit) {
+template <class S, class Visitor> void visitPhysics(S& s, Visitor&& visit) {
     auto& sim = s.simulation;
-    visit("simulation.formulation", sim.formulation,
-          Knob{"", 0, 0,
-               "wcsph: density by summation, rugged; delta_sph: density carried and diffused, smooth "
-               "pressure; delta_plus: the same with shifted particles, loses little energy; transport_velocity: second order, for flows that fill the domain; classic: "
-               "the historical one",
-               Restart});
+    visit(
+        "simulation.formulation", sim.formulation,
+        Knob{"", 0, 0,
+             "wcsph: density by summation, rugged; delta_sph: density carried and diffused, smooth "
+             "pressure; delta_plus: the same with shifted particles, loses little energy; "
+             "transport_velocity: second order, for flows that fill the domain; classic: "
+             "the historical one",
+             Restart});
     visit("simulation.dimensions", sim.dimensions,
           Knob{"", 2, 3, "2 = a layer of particles, everything depends on x and y only", Restart});
-    visit("simulation.kernel", sim.kernel, Knob{"", 0, 0, "smoothing kernel; mueller: poly6 for densities, the spiky one for gradients, one of its own for viscosity", Restart});
+    visit("simulation.kernel", sim.kernel,
+          Knob{"", 0, 0,
+               "smoothing kernel; mueller: poly6 for densities, the spiky one for gradients, one "
+               "of its own for viscosity",
+               Restart});
     visit("simulation.spacing", sim.spacing,
           Knob{"m", 1e-7f, 1e4f, "initial distance of particles", Restart});
     visit("simulation.support", sim.support, Knob{"", 1, 6, "support radius / spacing", Restart});
     visit("simulation.pressure_form", sim.pressureForm,
-          Knob{"", 0, 0, "of wcsph: squares: p_i / rho_i^2 + p_j / rho_j^2; mean: (p_i + p_j) / (2 rho_i rho_j)"});
-    visit("simulation.gravity", sim.gravity, Knob{"m/s²", -100, 100, "gravity; along a periodic axis the force that drives a channel's flow"});
+          Knob{"", 0, 0,
+               "of wcsph: squares: p_i / rho_i^2 + p_j / rho_j^2; mean: (p_i + p_j) / (2 rho_i "
+               "rho_j)"});
+    visit("simulation.gravity", sim.gravity,
+          Knob{"m/s²", -100, 100,
+               "gravity; along a periodic axis the force that drives a channel's flow"});
     visit("simulation.gravity_ramp", sim.gravityRamp,
           Knob{"s", 0, 1e4f,
-               "gravity grows from 0 to its full value in this time, without a jerk: for a pool that begins without the pressure "
+               "gravity grows from 0 to its full value in this time, without a jerk: for a pool "
+               "that begins without the pressure "
                "of its depth; 0 = there at once"});
     visit("simulation.central_rate", sim.centralRate,
           Knob{"1/s", 0, 1000, "Omega of a pull -Omega^2 r to the domain's centre, 0 = off"});
     visit("simulation.placement", sim.placement,
           Knob{"", 0, 0,
-               "lattice: in rows; relaxed: from a random start pushed apart until they fill the bodies evenly up to their "
-               "surfaces, round ones too, in no order: without a lattice's preferred directions and without its first collapse",
+               "lattice: in rows; relaxed: from a random start pushed apart until they fill the "
+               "bodies evenly up to their "
+               "surfaces, round ones too, in no order: without a lattice's preferred directions "
+               "and without its first collapse",
                Restart});
     visit("simulation.jitter", sim.jitter,
-          Knob{"", 0, 0.5f, "random displacement of each particle of the lattice at the start / spacing", Restart});
-    visit("simulation.seed", sim.seed, Knob{"", 0, 1e9f, "of the jitter, and of relaxed places", Restart});
+          Knob{"", 0, 0.5f,
+               "random displacement of each particle of the lattice at the start / spacing",
+               Restart});
+    visit("simulation.seed", sim.seed,
+          Knob{"", 0, 1e9f, "of the jitter, and of relaxed places", Restart});
     visit("simulation.acceleration_limit", sim.accelerationLimit,
           Knob{"m/s²", 0, 1e6f, "caps the pressure acceleration, 0 = off"});
 
@@ -377,11 +438,16 @@ void visitPhysics(S& s, Visitor&& visit) {
     visit("walls.velocity", s.walls.velocity,
           Knob{"m/s", -1e3f, 1e3f, "of the moving face, along itself"});
 
-    visit("time.mode", s.time.mode, Knob{"", 0, 0, "fixed step, the largest that is good for all, or local: each particle's own, and rest for who is calm"});
+    visit("time.mode", s.time.mode,
+          Knob{"", 0, 0,
+               "fixed step, the largest that is good for all, or local: each particle's own, and "
+               "rest for who is calm"});
     visit("time.integrator", s.time.integrator,
           Knob{"", 0, 0,
-               "symplectic_euler (semi-implicit): first order; velocity_verlet: second order for the same work, of carried density "
-               "nearly; predictor_corrector: second order, evaluates everything twice a step; split: first order, viscosity and "
+               "symplectic_euler (semi-implicit): first order; velocity_verlet: second order for "
+               "the same work, of carried density "
+               "nearly; predictor_corrector: second order, evaluates everything twice a step; "
+               "split: first order, viscosity and "
                "external forces first, then the pressure that follows from them, for delta_sph",
                Restart});
     visit("time.step", s.time.step, Knob{"s", 1e-12f, 100, "time step when fixed"});
@@ -389,20 +455,24 @@ void visitPhysics(S& s, Visitor&& visit) {
     visit("time.max_step", s.time.maxStep,
           Knob{"s", 1e-12f, 100, "longest step that cfl and local take"});
     visit("time.rest_speed", s.time.restSpeed,
-          Knob{"", 0, 0.1f, "local: slower than this share of the speed of sound, fluid may fall asleep; 0 = never"});
+          Knob{"", 0, 0.1f,
+               "local: slower than this share of the speed of sound, fluid may fall asleep; 0 = "
+               "never"});
     visit("time.retries", s.time.retries,
-          Knob{"", 0, 8, "how often a run in trouble goes back to its last good state and on with half the step"});
+          Knob{"", 0, 8,
+               "how often a run in trouble goes back to its last good state and on with half the "
+               "step"});
 }
 
-template <class S, class Visitor>
-void visitFluid(S& s, Visitor&& visit) {
+template <class S, class Visitor> void visitFluid(S& s, Visitor&& visit) {
     auto& f = s.fluid;
     visit("fluid.rest_density", f.restDensity,
           Knob{"kg/m³", 1e-3f, 1e5f, "density at rest", Restart});
     visit("fluid.particle_mass", f.particleMass,
           Knob{"kg", 0, 1e18f,
                "mass of a particle, 0 = rest density x its cell of the lattice; in two dimensions "
-               "kg/m", Restart});
+               "kg/m",
+               Restart});
     visit("fluid.sound_speed", f.soundSpeed,
           Knob{"m/s", 0, 1e4f, "speed of sound, 0 = speed_ratio x the expected speed"});
     visit("fluid.speed_ratio", f.speedRatio,
@@ -413,29 +483,37 @@ void visitFluid(S& s, Visitor&& visit) {
     visit("fluid.density_diffusion", f.densityDiffusion,
           Knob{"", 0, 1, "delta where density is carried, 0 = off"});
     visit("fluid.shifting", f.shifting,
-          Knob{"", 0, 4, "strength of particle shifting, delta_plus and transport_velocity, 0 = off"});
+          Knob{"", 0, 4,
+               "strength of particle shifting, delta_plus and transport_velocity, 0 = off"});
     visit("fluid.equation_of_state", f.equationOfState,
           Knob{"", 0, 0, "pressure from density", Restart});
     visit("fluid.gamma", f.gamma, Knob{"", 1, 10, "exponent of the Tait equation"});
     visit("fluid.stiffness", f.stiffness,
           Knob{"Pa", 0, 1e10f, "pressure scale, 0 = rest density x sound speed^2 / gamma"});
     visit("fluid.background_pressure", f.backgroundPressure,
-          Knob{"Pa", 0, 1e8f, "p0 of p = p0 + k ((rho / rho0)^gamma - 1): for fluid that fills its space; surfaces are pushed apart by it"});
+          Knob{"Pa", 0, 1e8f,
+               "p0 of p = p0 + k ((rho / rho0)^gamma - 1): for fluid that fills its space; "
+               "surfaces are pushed apart by it"});
     visit("fluid.surface_tension", f.surfaceTension,
           Knob{"N/m", 0, 1000, "of free surfaces (delta_plus), 0 = off"});
     visit("fluid.velocity_transfer", f.velocityTransfer,
-          Knob{"1/s", 0, 1e4f, "rate at which neighbours take over each other's velocity, 0 = off: viscosity that does not ask for its unit"});
+          Knob{"1/s", 0, 1e4f,
+               "rate at which neighbours take over each other's velocity, 0 = off: viscosity that "
+               "does not ask for its unit"});
     visit("fluid.buoyancy", f.buoyancy,
-          Knob{"", 0, 100, "who is lighter than the mean in its support rises with this times gravity times the share, 0 = off"});
-    visit("fluid.dissipation", f.dissipation, Knob{"1/s", 0, 100, "rate at which all motion fades, 0 = off"});
+          Knob{"", 0, 100,
+               "who is lighter than the mean in its support rises with this times gravity times "
+               "the share, 0 = off"});
+    visit("fluid.dissipation", f.dissipation,
+          Knob{"1/s", 0, 100, "rate at which all motion fades, 0 = off"});
     visit("fluid.air_density", f.airDensity,
           Knob{"kg/m³", 0, 100, "of air that slows drops and surfaces (wcsph), 0 = none"});
-    visit("fluid.drag_coefficient", f.dragCoefficient, Knob{"", 0, 10, "of a particle in that air, a sphere of its volume"});
+    visit("fluid.drag_coefficient", f.dragCoefficient,
+          Knob{"", 0, 10, "of a particle in that air, a sphere of its volume"});
     visit("fluid.wind", f.wind, Knob{"m/s", -1e3f, 1e3f, "velocity of that air"});
 }
 
-template <class S, class Visitor>
-void visitPicture(S& s, Visitor&& visit) {
+template <class S, class Visitor> void visitPicture(S& s, Visitor&& visit) {
     auto& v = s.view;
     visit("view.color_by", v.colorBy, Knob{"", 0, 0, "what colours the particles"});
     visit("view.color_map", v.colorMap, Knob{"", 0, 0, "table of colours"});
@@ -448,10 +526,11 @@ void visitPicture(S& s, Visitor&& visit) {
     visit("view.show_walls", v.showWalls, Knob{"", 0, 0, "draws the boundary particles"});
     visit("view.show_outline", v.showOutline, Knob{"", 0, 0, "draws the edges of the box"});
     visit("view.show_ground", v.showGround, Knob{"", 0, 0, "draws the ground"});
-    visit("view.up", v.up,
-          Knob{"", 0, 0,
-               "direction that is up in pictures; auto = against gravity as the run begins with it, "
-               "y where there is none or it acts along a periodic axis"});
+    visit(
+        "view.up", v.up,
+        Knob{"", 0, 0,
+             "direction that is up in pictures; auto = against gravity as the run begins with it, "
+             "y where there is none or it acts along a periodic axis"});
     visit("view.solid_particles", v.solidParticles,
           Knob{"", 0, 0, "draws the particles of solids instead of their shapes"});
     visit("view.particle_scale", v.particleScale, Knob{"", 0.05f, 5, "drawn diameter / spacing"});
@@ -482,8 +561,7 @@ void visitPicture(S& s, Visitor&& visit) {
           Knob{"m", -1e7f, 1e7f, "point looked at when not automatic"});
 }
 
-template <class S, class Visitor>
-void visitOutput(S& s, Visitor&& visit) {
+template <class S, class Visitor> void visitOutput(S& s, Visitor&& visit) {
     auto& o = s.output;
     visit("output.headless", o.headless, Knob{"", 0, 0, "runs without a window", Restart});
     visit("output.time", o.time,
@@ -495,23 +573,33 @@ void visitOutput(S& s, Visitor&& visit) {
     visit("output.csv", o.csv, Knob{"", 0, 0, "CSV time series, - = standard output", Restart});
     visit("output.json", o.json, Knob{"", 0, 0, "JSON time series, - = standard output", Restart});
     visit("output.checkpoint", o.checkpoint,
-          Knob{"", 0, 0, "HDF5 file from which the run can go on, written at its end and when it is stopped", Restart});
+          Knob{"", 0, 0,
+               "HDF5 file from which the run can go on, written at its end and when it is stopped",
+               Restart});
     visit("output.checkpoint_every", o.checkpointEvery,
           Knob{"s", 0, 1e6f, "simulated time between checkpoints, 0 = at the end only", Restart});
     visit("output.particles", o.particles,
-          Knob{"", 0, 0, "the last state's particles, .csv or .h5: what a body of shape file can start another run with", Restart});
-    visit("output.hdf5", o.hdf5, Knob{"", 0, 0, "HDF5 time series: a dataset with its unit for each column", Restart});
+          Knob{"", 0, 0,
+               "the last state's particles, .csv or .h5: what a body of shape file can start "
+               "another run with",
+               Restart});
+    visit("output.hdf5", o.hdf5,
+          Knob{"", 0, 0, "HDF5 time series: a dataset with its unit for each column", Restart});
     visit("output.sample_every", o.sampleEvery,
-          Knob{"s", 0, 1e6f, "simulated time between rows of the series, for impacts shorter than a frame; 0 = with the frames, by output.fps", Restart});
+          Knob{"s", 0, 1e6f,
+               "simulated time between rows of the series, for impacts shorter than a frame; 0 = "
+               "with the frames, by output.fps",
+               Restart});
     visit("output.strict", o.strict,
-          Knob{"", 0, 0, "results outside the validity of the method are an error, not a remark", Restart});
+          Knob{"", 0, 0, "results outside the validity of the method are an error, not a remark",
+               Restart});
 }
 
 }  // namespace schema
 
 // Calls visit(path, value, knob) for every knob of the scene. `visit` is a callable for float, int,
-// bool, std::string, Vec3, Vec3d, Keyframes and every enumeration above; values are references into the scene (const
-// when it is).
+// bool, std::string, Vec3, Vec3d, Keyframes and every enumeration above; values are references into
+// the scene (const when it is).
 template <class S, class Visitor>
 requires std::is_same_v<std::remove_const_t<S>, Scene>
 void visitKnobs(S& scene, Visitor&& visit) {

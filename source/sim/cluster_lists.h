@@ -1,6 +1,7 @@
-// Neighbour lists for SIMD lanes: for each cluster of four particles the clusters that may hold neighbours. Rows of
-// cells narrow the choice, bounding boxes decide. Built once a step or less often, read by every neighbour pass. Of a set with itself they may hold
-// each pair once, in the list of the earlier cluster, and no cluster with itself.
+// Neighbour lists for SIMD lanes: for each cluster of four particles the clusters that may hold
+// neighbours. Rows of cells narrow the choice, bounding boxes decide. Built once a step or less
+// often, read by every neighbour pass. Of a set with itself they may hold each pair once, in the
+// list of the earlier cluster, and no cluster with itself.
 #pragma once
 
 #include "core/error.h"
@@ -21,7 +22,7 @@ struct ClusterBoxes {
     void compute(Omp& device, const Particles& p) {
         const int clusters = p.slots / clusterSize;
         for (int k = 0; k < 3; ++k) {
-            low[k].resize(clusters + width);   // tests read whole registers
+            low[k].resize(clusters + width);  // tests read whole registers
             high[k].resize(clusters + width);
         }
         device.forRanges(clusters, 256, [&](int begin, int end) {
@@ -52,7 +53,8 @@ public:
         size_t numbers = 0;
         for (const auto* arenas : {&entries_, &pruned_})
             for (const std::vector<uint32_t>& arena : *arenas) numbers += arena.capacity();
-        return int64_t(lists_.capacity() * sizeof(ClusterList) + listed_.capacity() + (numbers + ends_.capacity()) * sizeof(uint32_t));
+        return int64_t(lists_.capacity() * sizeof(ClusterList) + listed_.capacity() +
+                       (numbers + ends_.capacity()) * sizeof(uint32_t));
     }
     // If each pair is in one list only; within a cluster all look at all.
     PairsSeen pairsSeen() const {
@@ -60,13 +62,15 @@ public:
         PairsSeen seen{inside, inside};
         for (const ClusterList& list : lists_) {
             seen.first += double(list.count) * clusterSize * clusterSize;
-            seen.later += double(Group::size == clusterSize ? list.prunedCount : list.count) * clusterSize * clusterSize;
+            seen.later += double(Group::size == clusterSize ? list.prunedCount : list.count) *
+                          clusterSize * clusterSize;
         }
         return seen;
     }
     // One beyond the last cluster that clusters [begin, end) have in their lists or are themselves.
     int endOf(int begin, int end) const {
-        return int(*std::max_element(ends_.begin() + begin / piece_, ends_.begin() + (end - 1) / piece_ + 1));
+        return int(*std::max_element(ends_.begin() + begin / piece_,
+                                     ends_.begin() + (end - 1) / piece_ + 1));
     }
 
     // Particles have another order or places: what there is holds no longer.
@@ -79,15 +83,24 @@ public:
         entries_.resize((clusters + piece_ - 1) / piece_);
         pruned_.resize(entries_.size());
         ends_.resize(entries_.size());
-        for (size_t p = 0; p < ends_.size(); ++p) ends_[p] = uint32_t(std::min(clusters, (p + 1) * piece_));
+        for (size_t p = 0; p < ends_.size(); ++p)
+            ends_[p] = uint32_t(std::min(clusters, (p + 1) * piece_));
     }
-    // Makes the lists that are wanted and not there: of all clusters, or with `due` of those of which it says more than NotDue. Boxes and cells are those
-    // of when the last ones were forgotten.
-    void build(Omp& device, const Grid& grid, float reach, const ClusterBoxes& own, const uint8_t* due,
-               const ClusterBoxes& other, const int* otherCellStart, bool once = false) {
+    // Makes the lists that are wanted and not there: of all clusters, or with `due` of those of
+    // which it says more than NotDue. Boxes and cells are those of when the last ones were
+    // forgotten.
+    void build(Omp& device, const Grid& grid, float reach, const ClusterBoxes& own,
+               const uint8_t* due, const ClusterBoxes& other, const int* otherCellStart,
+               bool once = false) {
         if (complete_ || otherCellStart[cellCount(grid)] == 0) return;
         complete_ = !due;
-        const Search search{grid, reach, own, due, other, otherCellStart, once,
+        const Search search{grid,
+                            reach,
+                            own,
+                            due,
+                            other,
+                            otherCellStart,
+                            once,
                             {periodOf(grid.wraps.x, grid.cells.x, grid.perMetre.x),
                              periodOf(grid.wraps.y, grid.cells.y, grid.perMetre.y),
                              periodOf(grid.wraps.z, grid.cells.z, grid.perMetre.z)}};
@@ -95,7 +108,8 @@ public:
             const int piece = begin / piece_;
             bool misses = false;
             for (int c = begin; c < end && !misses; ++c) misses = search.wants(c) && !listed_[c];
-            if (misses) ends_[piece] = buildPiece(begin, end, search, entries_[piece], pruned_[piece]);
+            if (misses)
+                ends_[piece] = buildPiece(begin, end, search, entries_[piece], pruned_[piece]);
         });
     }
 
@@ -108,13 +122,16 @@ private:
         const ClusterBoxes& other;
         const int* cellStart;
         bool once;
-        float period[3];   // m, 0 where there is none
+        float period[3];  // m, 0 where there is none
         bool wants(int cluster) const { return !due || due[cluster] > NotDue; }
     };
-    static float periodOf(int wraps, int cells, float perMetre) { return wraps ? float(cells) / perMetre : 0; }
+    static float periodOf(int wraps, int cells, float perMetre) {
+        return wraps ? float(cells) / perMetre : 0;
+    }
     static size_t cellCount(const Grid& g) { return size_t(g.cells.x) * g.cells.y * g.cells.z; }
 
-    uint32_t buildPiece(int begin, int end, const Search& s, std::vector<uint32_t>& entries, std::vector<uint32_t>& pruned) {
+    uint32_t buildPiece(int begin, int end, const Search& s, std::vector<uint32_t>& entries,
+                        std::vector<uint32_t>& pruned) {
         size_t used = 0;
         uint32_t farthest = uint32_t(end);
         for (int first = begin, last; first < end; first = last) {
@@ -128,7 +145,8 @@ private:
             for (int c = first; c < last; ++c) {
                 const size_t before = used;
                 for (int r = 0; r < ranges.count; ++r) {
-                    const uint32_t from = s.once ? std::max(ranges.first[r], uint32_t(c) + 1) : ranges.first[r];
+                    const uint32_t from =
+                        s.once ? std::max(ranges.first[r], uint32_t(c) + 1) : ranges.first[r];
                     if (from >= ranges.last[r]) continue;
                     used += keepNear(s, c, from, ranges.last[r], entries.data() + used);
                     if (used > before) farthest = std::max(farthest, entries[used - 1] + 1);
@@ -152,7 +170,9 @@ private:
         const float rowSize[3] = {0, 1.01f / s.grid.perMetre.y, 1.01f / s.grid.perMetre.z};
         auto sameRow = [&](int c) {
             for (int k : {1, 2})
-                if (std::max(s.own.high[k][c], s.own.high[k][first]) - std::min(s.own.low[k][c], s.own.low[k][first]) > rowSize[k])
+                if (std::max(s.own.high[k][c], s.own.high[k][first]) -
+                        std::min(s.own.low[k][c], s.own.low[k][first]) >
+                    rowSize[k])
                     return false;
             return true;
         };
@@ -183,8 +203,10 @@ private:
         }
         const Grid& g = s.grid;
         const float reach2 = s.reach * s.reach;
-        const Rows inZ = rowsWithin(g.rowZ(low[2] - s.reach), g.rowZ(high[2] + s.reach), g.cells.z, g.low.z, 1 / g.perMetre.z);
-        const Rows inY = rowsWithin(g.rowY(low[1] - s.reach), g.rowY(high[1] + s.reach), g.cells.y, g.low.y, 1 / g.perMetre.y);
+        const Rows inZ = rowsWithin(g.rowZ(low[2] - s.reach), g.rowZ(high[2] + s.reach), g.cells.z,
+                                    g.low.z, 1 / g.perMetre.z);
+        const Rows inY = rowsWithin(g.rowY(low[1] - s.reach), g.rowY(high[1] + s.reach), g.cells.y,
+                                    g.low.y, 1 / g.perMetre.y);
         RowRanges ranges;
         for (int z = inZ.first; z <= inZ.last; ++z) {
             const float gapZ = inZ.gap(z, low[2], high[2]);
@@ -194,12 +216,14 @@ private:
                 if (left2 <= 0) continue;
                 const float left = std::sqrt(left2);
                 const int* row = s.cellStart + g.row(y, z);
-                uint32_t done = 0;   // two stretches of a row may share a cluster
-                forStretches(g.cellX(low[0] - left), g.cellX(high[0] + left), g.cells.x, [&](int from, int to) {
-                    const uint32_t end = uint32_t((row[to + 1] + clusterSize - 1) / clusterSize);
-                    ranges.add(std::max(done, uint32_t(row[from] / clusterSize)), end);
-                    done = end;
-                });
+                uint32_t done = 0;  // two stretches of a row may share a cluster
+                forStretches(g.cellX(low[0] - left), g.cellX(high[0] + left), g.cells.x,
+                             [&](int from, int to) {
+                                 const uint32_t end =
+                                     uint32_t((row[to + 1] + clusterSize - 1) / clusterSize);
+                                 ranges.add(std::max(done, uint32_t(row[from] / clusterSize)), end);
+                                 done = end;
+                             });
             }
         }
         return ranges;
@@ -208,8 +232,8 @@ private:
     // Rows of cells along y or z, images included.
     struct Rows {
         int first, last;
-        bool all;           // then the nearest image of a row is not known
-        float low, size;    // m
+        bool all;         // then the nearest image of a row is not known
+        float low, size;  // m
         float gap(int row, float from, float to) const {
             return all ? 0 : rowGap(low + float(row) * size, size, from, to);
         }
@@ -219,9 +243,11 @@ private:
         return {first, last, false, low, size};
     }
 
-    // Distance from the interval [lo, hi] to a row; rows at the rim are taken as endless, they hold who is outside.
+    // Distance from the interval [lo, hi] to a row; rows at the rim are taken as endless, they hold
+    // who is outside.
     static float rowGap(float rowLow, float rowSize, float lo, float hi) {
-        const float slack = 1e-3f * rowSize;   // a particle on the face may have been rounded into the next row
+        const float slack =
+            1e-3f * rowSize;  // a particle on the face may have been rounded into the next row
         return std::max(0.0f, std::max(rowLow - hi, lo - rowLow - rowSize) - slack);
     }
 
@@ -229,14 +255,16 @@ private:
     using Wides = hn::Vec<WideTag>;
     HD static Wides gapBetween(Wides low, Wides high, float ownLow, float ownHigh, float period) {
         const WideTag d;
-        const auto gap = hn::Max(hn::Sub(low, hn::Set(d, ownHigh)), hn::Sub(hn::Set(d, ownLow), high));
+        const auto gap =
+            hn::Max(hn::Sub(low, hn::Set(d, ownHigh)), hn::Sub(hn::Set(d, ownLow), high));
         if (period <= 0) return gap;
         const auto above = hn::Sub(hn::Add(low, hn::Set(d, period)), hn::Set(d, ownHigh));
         const auto below = hn::Sub(hn::Add(hn::Set(d, ownLow), hn::Set(d, period)), high);
         return hn::Min(gap, hn::Min(above, below));
     }
 
-    // Of the clusters in [first, last) those whose box is nearer than `reach` to the box of cluster c.
+    // Of the clusters in [first, last) those whose box is nearer than `reach` to the box of cluster
+    // c.
     static int keepNear(const Search& s, int c, uint32_t first, uint32_t last, uint32_t* out) {
         const WideTag d;
         const hn::RebindToUnsigned<WideTag> du;
@@ -244,14 +272,17 @@ private:
         for (uint32_t j = first; j < last; j += width) {
             auto distance2 = hn::Zero(d);
             for (int k = 0; k < 3; ++k) {
-                const auto gap = gapBetween(hn::LoadU(d, s.other.low[k].data() + j), hn::LoadU(d, s.other.high[k].data() + j),
+                const auto gap = gapBetween(hn::LoadU(d, s.other.low[k].data() + j),
+                                            hn::LoadU(d, s.other.high[k].data() + j),
                                             s.own.low[k][c], s.own.high[k][c], s.period[k]);
                 const auto apart = hn::Max(gap, hn::Zero(d));
                 distance2 = hn::MulAdd(apart, apart, distance2);
             }
-            const auto near = hn::And(hn::Lt(distance2, hn::Set(d, s.reach * s.reach)), hn::FirstN(d, last - j));
+            const auto near =
+                hn::And(hn::Lt(distance2, hn::Set(d, s.reach * s.reach)), hn::FirstN(d, last - j));
             const auto index = hn::Add(hn::Iota(du, 0), hn::Set(du, j));
-            // Compressing to memory takes some hundred cycles on Zen 4; through a register it is cheap everywhere.
+            // Compressing to memory takes some hundred cycles on Zen 4; through a register it is
+            // cheap everywhere.
             hn::StoreU(hn::Compress(index, hn::RebindMask(du, near)), du, out + kept);
             kept += int(hn::CountTrue(d, near));
         }
@@ -260,10 +291,11 @@ private:
 
     int piece_ = 1;
     bool complete_ = false;
-    std::vector<uint8_t> listed_;   // which clusters have their list
+    std::vector<uint8_t> listed_;  // which clusters have their list
     std::vector<uint32_t> ends_;   // a piece: one beyond the last cluster in its lists
     std::vector<ClusterList> lists_;
-    std::vector<std::vector<uint32_t>> entries_, pruned_;   // one arena a piece, kept from step to step
+    std::vector<std::vector<uint32_t>> entries_,
+        pruned_;  // one arena a piece, kept from step to step
 };
 
 }  // namespace spindrift::LANES

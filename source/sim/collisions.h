@@ -1,21 +1,26 @@
-// What keeps fluid out of solids, at any speed: boundary particles push it away, but not every drop, and not one that would be through a thin plate within a
-// step. Where a particle's way meets a surface it stops, and slides along it for the rest of the step.
+// What keeps fluid out of solids, at any speed: boundary particles push it away, but not every
+// drop, and not one that would be through a thin plate within a step. Where a particle's way meets
+// a surface it stops, and slides along it for the rest of the step.
 #pragma once
 
 #include "sim/solids.h"
 
 namespace spindrift::LANES {
 
-// The way of a particle from the share `begin` of a step to its end, m. A straight line in space, it is a curved one as a solid sees it that turns; along the
-// one that carries it, it is straight in that one's own axes.
+// The way of a particle from the share `begin` of a step to its end, m. A straight line in space,
+// it is a curved one as a solid sees it that turns; along the one that carries it, it is straight
+// in that one's own axes.
 struct Way {
     Vector<real> from, to;
     real begin;
-    int carrier;   // -1: none
-    Vector<real> ownFrom, ownTo, stays;   // stays: in space, where it would be without sliding
+    int carrier;                         // -1: none
+    Vector<real> ownFrom, ownTo, stays;  // stays: in space, where it would be without sliding
 };
 // Where and when it meets a solid, and that one's normal there, both in its own axes.
-struct Meeting { real share; Vector<real> at, normal; };
+struct Meeting {
+    real share;
+    Vector<real> at, normal;
+};
 
 // A solid during a step.
 struct SolidInStep {
@@ -27,13 +32,20 @@ struct SolidInStep {
         return addScaled(way.from, along, way.to - way.from);
     }
     // From the middle, in space, at that share of the step.
-    HD Vector<real> armAt(Vector<real> x, real share) const { return x - addScaled(s.middleBefore, share, s.middle - s.middleBefore); }
+    HD Vector<real> armAt(Vector<real> x, real share) const {
+        return x - addScaled(s.middleBefore, share, s.middle - s.middleBefore);
+    }
     // To the solid's nearest image.
     HD Vector<real> shiftOf(Vector<real> arm) const {
-        auto whole = [](real a, real period, real inverse) LANE_CALL { return period * roundDown(a * inverse + real(0.5)); };
-        return {whole(arm.x, c.period.x, c.inversePeriod.x), whole(arm.y, c.period.y, c.inversePeriod.y), whole(arm.z, c.period.z, c.inversePeriod.z)};
+        auto whole = [](real a, real period, real inverse)
+                         LANE_CALL { return period * roundDown(a * inverse + real(0.5)); };
+        return {whole(arm.x, c.period.x, c.inversePeriod.x),
+                whole(arm.y, c.period.y, c.inversePeriod.y),
+                whole(arm.z, c.period.z, c.inversePeriod.z)};
     }
-    HD static Vector<real> components(const Vector<real> (&axis)[3], Vector<real> a) { return {dot(a, axis[0]), dot(a, axis[1]), dot(a, axis[2])}; }
+    HD static Vector<real> components(const Vector<real> (&axis)[3], Vector<real> a) {
+        return {dot(a, axis[0]), dot(a, axis[1]), dot(a, axis[2])};
+    }
     // In its own axes, as they are then.
     HD Vector<real> own(Vector<real> arm, real share) const {
         return share < 1 ? rotated(components(s.axisBefore, arm), -share) : components(s.axis, arm);
@@ -52,7 +64,8 @@ struct SolidInStep {
         return addScaled(addScaled(cosine * a, sine, cross(k, a)), (1 - cosine) * dot(k, a), k);
     }
 
-    // In pieces that are nearly straight as the solid sees them, and short enough for one image of it.
+    // In pieces that are nearly straight as the solid sees them, and short enough for one image of
+    // it.
     HD bool meets(const Way& way, Meeting& m) const {
         const Vector<real> line = way.to - way.from;
         real pieces = 1 + 4 * squareRoot(dot(s.turn, s.turn)) * (1 - way.begin);
@@ -60,9 +73,13 @@ struct SolidInStep {
         const int count = int(min(pieces, real(1000)));
         for (int k = 0; k < count; ++k) {
             const real begin = way.begin + (1 - way.begin) * real(k) / real(count);
-            const real end = k + 1 == count ? real(1) : way.begin + (1 - way.begin) * real(k + 1) / real(count), half = (begin + end) / 2;
+            const real end = k + 1 == count
+                                 ? real(1)
+                                 : way.begin + (1 - way.begin) * real(k + 1) / real(count),
+                       half = (begin + end) / 2;
             const Vector<real> shift = shiftOf(armAt(placeAt(way, half), half));
-            const Vector<real> p = own(armAt(placeAt(way, begin), begin) - shift, begin), q = own(armAt(placeAt(way, end), end) - shift, end);
+            const Vector<real> p = own(armAt(placeAt(way, begin), begin) - shift, begin),
+                               q = own(armAt(placeAt(way, end), end) - shift, end);
             if (!enters(p, q, m)) continue;
             m.share = begin + m.share * (end - begin);
             return true;
@@ -74,7 +91,9 @@ struct SolidInStep {
         m.share = way.begin + m.share * (1 - way.begin);
         return true;
     }
-    HD bool enters(Vector<real> p, Vector<real> q, Meeting& m) const { return s.field ? entersMesh(p, q, m) : entersConvex(p, q, m); }
+    HD bool enters(Vector<real> p, Vector<real> q, Meeting& m) const {
+        return s.field ? entersMesh(p, q, m) : entersConvex(p, q, m);
+    }
     // Who is inside already and goes on inward is stopped where it is nearest to the surface.
     HD bool goesInward(Vector<real> p, Vector<real> q, real distance, Meeting& m) const {
         m.share = 0, m.at = addScaled(p, c.gap - distance, m.normal);
@@ -91,7 +110,9 @@ struct SolidInStep {
             if (!(change != 0) && height > 0) return false;
         }
         if (s.radius > 0) {
-            auto across = [&](Vector<real> a) LANE_CALL { return Vector<real>{s.across.x * a.x, s.across.y * a.y, s.across.z * a.z}; };
+            auto across = [&](Vector<real> a) LANE_CALL {
+                return Vector<real>{s.across.x * a.x, s.across.y * a.y, s.across.z * a.z};
+            };
             // From the point of the line that is nearest to the axis or centre.
             const Vector<real> a = across(p), w = across(way);
             const real w2 = dot(w, w), closest = w2 > 0 ? -dot(a, w) / w2 : real(0);
@@ -100,7 +121,8 @@ struct SolidInStep {
             if (chord2 < 0) return false;
             if (w2 > 0) {
                 const real half = squareRoot(chord2 / w2);
-                if (closest - half > in) in = closest - half, m.normal = (1 / s.radius) * addScaled(a, in, w);
+                if (closest - half > in)
+                    in = closest - half, m.normal = (1 / s.radius) * addScaled(a, in, w);
                 out = min(out, closest + half);
             }
         }
@@ -110,7 +132,8 @@ struct SolidInStep {
         m.share = in, m.at = addScaled(at, c.gap - nearest(s, at, unused), m.normal);
         return true;
     }
-    // From where the way enters the box of the mesh, as far each time as nothing is near, or a small part of the field's cells.
+    // From where the way enters the box of the mesh, as far each time as nothing is near, or a
+    // small part of the field's cells.
     HD bool entersMesh(Vector<real> p, Vector<real> q, Meeting& m) const {
         const Vector<real> way = q - p;
         real in = 0, out = 1;
@@ -124,13 +147,15 @@ struct SolidInStep {
         if (!(in <= out && length > 0)) return false;
         const Vector<real> from = addScaled(p, in, way), along = (1 / length) * way;
         const real shortest = real(0.25) / s.nodesPerMetre, end = (out - in) * length;
-        bool outside = in > 0;   // who is inside the box at once came through a face of both
+        bool outside = in > 0;  // who is inside the box at once came through a face of both
         real at = 0, before = 0, d = surface(s, from, m.normal);
         if (d > 2 * end) return false;
         if (!outside && d <= 0 && goesInward(p, q, d, m)) return true;
         while (true) {
-            if (d > 0) outside = true, before = at;
-            else if (outside) break;
+            if (d > 0)
+                outside = true, before = at;
+            else if (outside)
+                break;
             if (!(at < end)) return false;
             at = min(end, at + max(real(0.8) * d, shortest));
             d = surface(s, addScaled(from, at, along), m.normal);
@@ -146,7 +171,8 @@ struct SolidInStep {
     }
 };
 
-// How a particle's velocity changed where it was stopped, m/s, and by which solid, -1: by none. Where solids float: they get the opposite.
+// How a particle's velocity changed where it was stopped, m/s, and by which solid, -1: by none.
+// Where solids float: they get the opposite.
 struct Bounces {
     VectorField change;
     ScalarField solid;
@@ -171,20 +197,26 @@ struct KeepOutOfSolids {
     template <class I> HD Vector<Real<I>> begin(I i, Vector<Real<I>> x) const {
         return isDue<NotDue>(v.fluid, firstOf(i)) ? load(v.fluid.keptPosition, i) : x;
     }
-    // No more than how much further the surface is from the end of the way than the way is long, as the solid sees it.
+    // No more than how much further the surface is from the end of the way than the way is long, as
+    // the solid sees it.
     HD R roomTo(const SolidState& s, Vector<R> from, Vector<R> to) const {
         auto wide = [](Vector<real> b) LANE_CALL { return Vector<R>{b.x, b.y, b.z}; };
         Vector<R> arm = to - wide(intoDomain(v.c, s.middle));
         if (v.c.periodic)
-            arm = {nearestImage(arm.x, v.c.period.x, v.c.inversePeriod.x), nearestImage(arm.y, v.c.period.y, v.c.inversePeriod.y),
+            arm = {nearestImage(arm.x, v.c.period.x, v.c.inversePeriod.x),
+                   nearestImage(arm.y, v.c.period.y, v.c.inversePeriod.y),
                    nearestImage(arm.z, v.c.period.z, v.c.inversePeriod.z)};
         const Vector<R> armBefore = arm - (to - from) + wide(s.middle - s.middleBefore);
-        const Vector<R> own{dot(arm, wide(s.axis[0])), dot(arm, wide(s.axis[1])), dot(arm, wide(s.axis[2]))};
-        const Vector<R> before{dot(armBefore, wide(s.axisBefore[0])), dot(armBefore, wide(s.axisBefore[1])), dot(armBefore, wide(s.axisBefore[2]))};
+        const Vector<R> own{dot(arm, wide(s.axis[0])), dot(arm, wide(s.axis[1])),
+                            dot(arm, wide(s.axis[2]))};
+        const Vector<R> before{dot(armBefore, wide(s.axisBefore[0])),
+                               dot(armBefore, wide(s.axisBefore[1])),
+                               dot(armBefore, wide(s.axisBefore[2]))};
         const R turn = 2 * squareRoot(dot(s.turn, s.turn));
         const Vector<R> line = own - before;
         Vector<R> n{0, 0, 0};
-        return nearest(s, own, n) - squareRoot(dot(line, line)) - turn * squareRoot(max(dot(arm, arm), dot(armBefore, armBefore)));
+        return nearest(s, own, n) - squareRoot(dot(line, line)) -
+               turn * squareRoot(max(dot(arm, arm), dot(armBefore, armBefore)));
     }
     HD void stop(int i) const {
         const Vector<real> x = load(v.fluid.position, i);
@@ -199,7 +231,9 @@ struct KeepOutOfSolids {
             for (int s = 0; s < v.solidCount; ++s) {
                 const SolidInStep solid{v.solids[s], v.c};
                 Meeting m{2, {0, 0, 0}, {0, 0, 0}};
-                if ((s == way.carrier ? solid.meetsCarried(way, m) : solid.meets(way, m)) && m.share < soonest.share) soonest = m, first = s;
+                if ((s == way.carrier ? solid.meetsCarried(way, m) : solid.meets(way, m)) &&
+                    m.share < soonest.share)
+                    soonest = m, first = s;
             }
             free = first < 0;
             if (!free) slide(last = first, soonest, way, u);
@@ -208,17 +242,22 @@ struct KeepOutOfSolids {
         Vector<real> end = free ? way.to : way.stays;
         for (int s = 0; s < v.solidCount; ++s)
             if (leave(v.solids[s], end, u)) last = s;
-        store(v.fluid.position, i, inBox(end));   // also where a solid that floats presses it against a wall
+        store(v.fluid.position, i,
+              inBox(end));  // also where a solid that floats presses it against a wall
         store(v.fluid.velocity, i, u);
-        if (bounces.solid.data) store(bounces.change, i, u - before), store(bounces.solid, i, real(last));
+        if (bounces.solid.data)
+            store(bounces.change, i, u - before), store(bounces.solid, i, real(last));
     }
     // It is carried along, and goes on in the plane that touches the solid there, in the box.
     HD void slide(int carrier, const Meeting& m, Way& way, Vector<real>& u) const {
         const SolidState& s = v.solids[carrier];
         const SolidInStep solid{s, v.c};
-        const Vector<real> place = SolidInStep::placeAt(way, m.share), arm = solid.armAt(place, m.share), at = solid.inSpace(m.at, m.share);
-        const Vector<real> shift = solid.shiftOf(arm - at), endArm = solid.armAt(way.to, 1) - shift, end = solid.own(endArm, 1);
-        const Vector<real> slid = turned(s, subtractScaled(end, dot(end - m.at, m.normal), m.normal));
+        const Vector<real> place = SolidInStep::placeAt(way, m.share),
+                           arm = solid.armAt(place, m.share), at = solid.inSpace(m.at, m.share);
+        const Vector<real> shift = solid.shiftOf(arm - at), endArm = solid.armAt(way.to, 1) - shift,
+                           end = solid.own(endArm, 1);
+        const Vector<real> slid =
+            turned(s, subtractScaled(end, dot(end - m.at, m.normal), m.normal));
         way.from = place - arm + shift + at;
         way.to = inBox(s.middle + shift + slid);
         way.begin = m.share, way.carrier = carrier;
@@ -227,8 +266,10 @@ struct KeepOutOfSolids {
         bounce(s, slid, turned(s, m.normal), u);
     }
     HD Vector<real> inBox(Vector<real> x) const {
-        auto within = [](real a, real low, real high, real period) LANE_CALL { return period > 0 ? a : min(max(a, low), high); };
-        return {within(x.x, v.c.low.x, v.c.high.x, v.c.period.x), within(x.y, v.c.low.y, v.c.high.y, v.c.period.y),
+        auto within = [](real a, real low, real high, real period)
+                          LANE_CALL { return period > 0 ? a : min(max(a, low), high); };
+        return {within(x.x, v.c.low.x, v.c.high.x, v.c.period.x),
+                within(x.y, v.c.low.y, v.c.high.y, v.c.period.y),
                 within(x.z, v.c.low.z, v.c.high.z, v.c.period.z)};
     }
     // As from the domain's box, relative to the solid.

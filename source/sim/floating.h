@@ -10,40 +10,57 @@
 
 namespace spindrift::LANES {
 
-// Where a solid touches, it is made of balls: its outermost boundary particles, as large as they are deep in it. They press like damped springs and rub
-// (Cundall & Strack 1979); a face full of them is as stiff as the step can bear, and overlaps by about a thousandth of a spacing under its weight.
-struct Touch { Vec3d force, torque; HD_OUT void add(const Touch& o) { force = force + o.force, torque = torque + o.torque; } };
+// Where a solid touches, it is made of balls: its outermost boundary particles, as large as they
+// are deep in it. They press like damped springs and rub (Cundall & Strack 1979); a face full of
+// them is as stiff as the step can bear, and overlaps by about a thousandth of a spacing under its
+// weight.
+struct Touch {
+    Vec3d force, torque;
+    HD_OUT void add(const Touch& o) { force = force + o.force, torque = torque + o.torque; }
+};
 
-// What presses: a mass m on such a spring, k = m rate^2, swings at `rate` rad/s and is damped by that share of the critical.
-struct Springs { real rate, damping; };
+// What presses: a mass m on such a spring, k = m rate^2, swings at `rate` rad/s and is damped by
+// that share of the critical.
+struct Springs {
+    real rate, damping;
+};
 
 // m, of a ball in a solid; with the direction out of it and the solid's own velocity there.
-HD inline real depthIn(const View& v, const SolidState& s, Vector<real> x, real radius, Vector<real>& n, Vector<real>& velocity) {
+HD inline real depthIn(const View& v, const SolidState& s, Vector<real> x, real radius,
+                       Vector<real>& n, Vector<real>& velocity) {
     const Vector<real> arm = imageOf(v.c, x - s.middle);
     if (dot(arm, arm) > (s.reach + radius) * (s.reach + radius)) return real(-1);
-    const real depth = radius - surface(s, Vector<real>{dot(arm, s.axis[0]), dot(arm, s.axis[1]), dot(arm, s.axis[2])}, n);
+    const real depth =
+        radius -
+        surface(s, Vector<real>{dot(arm, s.axis[0]), dot(arm, s.axis[1]), dot(arm, s.axis[2])}, n);
     n = turned(s, n), velocity = s.velocity + cross(s.spin, arm);
     return depth;
 }
 
-// Sums what `solid` feels where its balls touch walls and other solids, and where other solids' balls touch it.
+// Sums what `solid` feels where its balls touch walls and other solids, and where other solids'
+// balls touch it.
 struct SumTouches {
     View v;
     WallsAtHome home;
     const RigidBody* bodies;
     int solid;
-    struct Ball { Vector<real> position, velocity; real radius; };
+    struct Ball {
+        Vector<real> position, velocity;
+        real radius;
+    };
 
     HD void addTo(Touch& sum, int i) const {
         const int owner = v.walls.id[i] < 0 ? -1 : home.solidOf(v.walls.id[i]);
         if (owner < 0) return;
         const SolidState& own = v.solids[owner];
         Vector<real> normal{0, 0, 0};
-        const real depth = -surface(own, load(home.position, v.walls.id[i] - home.firstId) - own.home, normal);
+        const real depth =
+            -surface(own, load(home.position, v.walls.id[i] - home.firstId) - own.home, normal);
         if (depth > bodies[owner].deepestBall) return;
         const Ball ball{load(v.walls.position, i), load(v.walls.ownVelocity, i), depth};
         Vector<real> force{0, 0, 0};
-        if (owner != solid) force = real(-1) * pressOn(ball, owner, solid);
+        if (owner != solid)
+            force = real(-1) * pressOn(ball, owner, solid);
         else {
             touchBox(ball, force);
             for (int other = 0; other < v.solidCount; ++other)
@@ -55,12 +72,19 @@ struct SumTouches {
     }
     HD void touchBox(const Ball& b, Vector<real>& force) const {
         const RigidBody& body = bodies[solid];
-        auto side = [&](real overlap, Vector<real> n) { force = force + press(body, overlap, n, b.velocity - wallVelocity(v.c, b.position)); };
+        auto side = [&](real overlap, Vector<real> n) {
+            force = force + press(body, overlap, n, b.velocity - wallVelocity(v.c, b.position));
+        };
         const Constants& c = v.c;
-        if (c.period.x <= 0) side(b.radius - (b.position.x - c.low.x), {1, 0, 0}), side(b.radius - (c.high.x - b.position.x), {-1, 0, 0});
-        if (c.period.y <= 0) side(b.radius - (b.position.y - c.low.y), {0, 1, 0}), side(b.radius - (c.high.y - b.position.y), {0, -1, 0});
+        if (c.period.x <= 0)
+            side(b.radius - (b.position.x - c.low.x), {1, 0, 0}),
+                side(b.radius - (c.high.x - b.position.x), {-1, 0, 0});
+        if (c.period.y <= 0)
+            side(b.radius - (b.position.y - c.low.y), {0, 1, 0}),
+                side(b.radius - (c.high.y - b.position.y), {0, -1, 0});
         if (c.period.z <= 0 && c.dimensions == 3)
-            side(b.radius - (b.position.z - c.low.z), {0, 0, 1}), side(b.radius - (c.high.z - b.position.z), {0, 0, -1});
+            side(b.radius - (b.position.z - c.low.z), {0, 0, 1}),
+                side(b.radius - (c.high.z - b.position.z), {0, 0, -1});
     }
     HD Vector<real> pressOn(const Ball& b, int owner, int other) const {
         const SolidState& s = v.solids[other];
@@ -73,12 +97,15 @@ struct SumTouches {
         both.friction = min(mine.friction, theirs.friction);
         return press(both, depth, n, b.velocity - own);
     }
-    HD static Vector<real> press(const RigidBody& b, real overlap, Vector<real> n, Vector<real> velocity) {
+    HD static Vector<real> press(const RigidBody& b, real overlap, Vector<real> n,
+                                 Vector<real> velocity) {
         if (overlap <= 0) return {0, 0, 0};
-        const real apart = dot(velocity, n), normal = max(b.stiffness * overlap - b.damping * apart, real(0));
+        const real apart = dot(velocity, n),
+                   normal = max(b.stiffness * overlap - b.damping * apart, real(0));
         const Vector<real> along = velocity - apart * n;
         const real slip = squareRoot(dot(along, along));
-        return addScaled(normal * n, -min(b.damping, b.friction * normal / max(slip, real(1e-12))), along);
+        return addScaled(normal * n, -min(b.damping, b.friction * normal / max(slip, real(1e-12))),
+                         along);
     }
 };
 
@@ -89,16 +116,20 @@ struct AddTouch {
     HD void operator()(int) const { sum->add(*one); }
 };
 
-// The momentum that particles lost where a solid stopped them, kg m/s, and the angular momentum about its centre.
+// The momentum that particles lost where a solid stopped them, kg m/s, and the angular momentum
+// about its centre.
 struct SumBounces {
     View v;
     Bounces bounces;
-    real mass;   // kg, of a fluid particle
+    real mass;  // kg, of a fluid particle
     int solid;
     HD void addTo(Touch& sum, int i) const {
         if (v.fluid.id[i] < 0 || load(bounces.solid, i) != real(solid)) return;
-        const Vector<real> change = load(bounces.change, i), arm = imageOf(v.c, load(v.fluid.position, i) - v.solids[solid].centreOfMass);
-        const Vec3d lost = -double(mass * massRatio(v.fluid, i)) * Vec3d{change.x, change.y, change.z};
+        const Vector<real> change = load(bounces.change, i),
+                           arm = imageOf(v.c,
+                                         load(v.fluid.position, i) - v.solids[solid].centreOfMass);
+        const Vec3d lost =
+            -double(mass * massRatio(v.fluid, i)) * Vec3d{change.x, change.y, change.z};
         sum.add({lost, cross(Vec3d{arm.x, arm.y, arm.z}, lost)});
     }
 };
@@ -117,8 +148,9 @@ struct TakeMomentum {
     }
 };
 
-// v += F / m dt, x += v dt; the same of angular momentum and turn. A solid that the mouse holds goes where it is wanted: one that floats by a damped
-// spring, another one by itself, no faster than a tenth of the speed of sound.
+// v += F / m dt, x += v dt; the same of angular momentum and turn. A solid that the mouse holds
+// goes where it is wanted: one that floats by a damped spring, another one by itself, no faster
+// than a tenth of the speed of sound.
 struct MoveFloating {
     using Index = int;
     View v;
@@ -126,12 +158,10 @@ struct MoveFloating {
     SolidMotion* motions;
     const SolidLoad* loads;
     const Touch* touches;
-    double fluidMass;            // kg, of a particle
-    Hold hold;                   // target relative to the domain's lower corner
-    double kick, drift;          // shares of the step
-    HD void operator()(int s) const {
-        bodies[s].mass > 0 ? moveFloating(s) : drag(s);
-    }
+    double fluidMass;    // kg, of a particle
+    Hold hold;           // target relative to the domain's lower corner
+    double kick, drift;  // shares of the step
+    HD void operator()(int s) const { bodies[s].mass > 0 ? moveFloating(s) : drag(s); }
     HD void moveFloating(int s) const {
         const RigidBody& body = bodies[s];
         SolidMotion& m = motions[s];
@@ -147,28 +177,34 @@ struct MoveFloating {
     HD Touch wrenchOn(int s) const {
         const SolidLoad& load = loads[s];
         const SolidState& state = v.solids[s];
-        const Vector<real> pull = bodyForce(v.c, gravityNow(v), state.centreOfMass), out = state.middle - state.centreOfMass;
+        const Vector<real> pull = bodyForce(v.c, gravityNow(v), state.centreOfMass),
+                           out = state.middle - state.centreOfMass;
         auto sum = [&](int k) { return fluidMass * (load.pressure[k] + load.other[k]); };
-        const Vec3d fluid{sum(0), sum(1), sum(2)}, torque{load.torque[0], load.torque[1], load.torque[2]};
+        const Vec3d fluid{sum(0), sum(1), sum(2)},
+            torque{load.torque[0], load.torque[1], load.torque[2]};
         return {fluid + touches[s].force + bodies[s].mass * Vec3d{pull.x, pull.y, pull.z},
                 fluidMass * torque + cross(Vec3d{out.x, out.y, out.z}, fluid) + touches[s].torque};
     }
     HD void pull(Touch& w, const RigidBody& body, const SolidMotion& m, const SolidState& s) const {
-        const double rate = 15, most = 60;   // 1/s, m/s²
+        const double rate = 15, most = 60;  // 1/s, m/s²
         const Vec3d target{hold.target.x, hold.target.y, hold.target.z};
-        const Vec3d wanted = (rate * rate) * (target - Vec3d{s.middle.x, s.middle.y, s.middle.z}) - (2 * rate) * m.velocity;
+        const Vec3d wanted = (rate * rate) * (target - Vec3d{s.middle.x, s.middle.y, s.middle.z}) -
+                             (2 * rate) * m.velocity;
         const double size = sqrt(dot(wanted, wanted));
         w.force = w.force + (body.mass * (size > most ? most / size : 1.0)) * wanted;
         w.torque = w.torque - rate * m.angularMomentum;
     }
     HD void drag(int s) const {
-        const double time = 0.05, fastest = 0.1 * double(v.c.soundSpeed), dt = v.state->dt;   // s, m/s
+        const double time = 0.05, fastest = 0.1 * double(v.c.soundSpeed),
+                     dt = v.state->dt;  // s, m/s
         SolidMotion& m = motions[s];
         m.velocity = {0, 0, 0};
         if (hold.solid != s) return;
         if (m.left < 0 && !v.solids[s].steady) m.left = v.state->time - dt;
         const Vector<real> at = v.solids[s].middle;
-        const Vec3d wanted = (1 / (dt > time ? dt : time)) * (Vec3d{hold.target.x, hold.target.y, hold.target.z} - Vec3d{at.x, at.y, at.z});
+        const Vec3d wanted =
+            (1 / (dt > time ? dt : time)) *
+            (Vec3d{hold.target.x, hold.target.y, hold.target.z} - Vec3d{at.x, at.y, at.z});
         const double speed = sqrt(dot(wanted, wanted));
         m.velocity = (speed > fastest ? fastest / speed : 1.0) * wanted;
         if (v.c.dimensions == 2) m.velocity.z = 0;
@@ -176,7 +212,8 @@ struct MoveFloating {
     }
     HD Vec3d wrapped(Vec3d x) const {
         const Constants& c = v.c;
-        return {x.x - c.period.x * floor(x.x * c.inversePeriod.x), x.y - c.period.y * floor(x.y * c.inversePeriod.y),
+        return {x.x - c.period.x * floor(x.x * c.inversePeriod.x),
+                x.y - c.period.y * floor(x.y * c.inversePeriod.y),
                 x.z - c.period.z * floor(x.z * c.inversePeriod.z)};
     }
 };
@@ -207,13 +244,18 @@ public:
     // `motions` of a run that goes on; none: solids are at their places in the scene.
     void restart(const Scene& scene, std::vector<SolidMotion> motions) {
         for (size_t s = motions.size(); s < onHost_.size(); ++s)
-            motions.push_back(scene.solids[s].floats() ? motionAtHome(scene, scene.solids[s], onHost_[s]) : SolidMotion{});
+            motions.push_back(scene.solids[s].floats()
+                                  ? motionAtHome(scene, scene.solids[s], onHost_[s])
+                                  : SolidMotion{});
         CHECK(motions.size() == onHost_.size());
         fill(motions_, motions);
     }
-    // How balls press, as live knobs say: a face full of them swings a fifth of a radian in the longest `step` that the run takes, s.
+    // How balls press, as live knobs say: a face full of them swings a fifth of a radian in the
+    // longest `step` that the run takes, s.
     void setSprings(const Scene& scene, double step) {
-        const double rate = 0.2 / step, lost = std::log(std::max(double(scene.walls.restitution), 1e-6)), ratio = -lost / std::hypot(lost, std::numbers::pi);
+        const double rate = 0.2 / step,
+                     lost = std::log(std::max(double(scene.walls.restitution), 1e-6)),
+                     ratio = -lost / std::hypot(lost, std::numbers::pi);
         springs_ = {real(rate), real(ratio)};
         for (size_t s = 0; s < onHost_.size(); ++s) {
             if (onHost_[s].mass <= 0) continue;
@@ -233,11 +275,13 @@ public:
     void letGo() { device_.forEach(int(onHost_.size()), LetGo{bodies_.data(), motions_.data()}); }
 
     // `sum(solid)` is the reduction of what fluid does to it.
-    template <class Sum> void findForces(const Scene& scene, const View& v, const WallsAtHome& home, const Sum& sum) {
+    template <class Sum>
+    void findForces(const Scene& scene, const View& v, const WallsAtHome& home, const Sum& sum) {
         for (int s = 0; s < v.solidCount; ++s) {
             if (!scene.solids[size_t(s)].floats()) continue;
             device_.reduce(v.walls.slots, sum(s), loads_.data() + s);
-            device_.reduce(v.walls.slots, SumTouches{v, home, bodies_.data(), s}, touches_.data() + s);
+            device_.reduce(v.walls.slots, SumTouches{v, home, bodies_.data(), s},
+                           touches_.data() + s);
         }
     }
     // `sum(solid)` is the reduction over `count` of what else touches it.
@@ -255,11 +299,16 @@ public:
     void takeMomentum(const Scene& scene, const View& v) {
         for (int s = 0; s < v.solidCount; ++s)
             if (scene.solids[size_t(s)].floats())
-                device_.reduce(v.fluid.slots, SumBounces{v, bounces(v.fluid.slots), real(particleMass(scene)), s}, touches_.data() + s);
-        device_.forEach(v.solidCount, TakeMomentum{bodies_.data(), touches_.data(), motions_.data(), scene.simulation.dimensions});
+                device_.reduce(v.fluid.slots,
+                               SumBounces{v, bounces(v.fluid.slots), real(particleMass(scene)), s},
+                               touches_.data() + s);
+        device_.forEach(v.solidCount, TakeMomentum{bodies_.data(), touches_.data(), motions_.data(),
+                                                   scene.simulation.dimensions});
     }
     void move(const View& v, double fluidMass, const Hold& hold, double kick, double drift) {
-        device_.forEach(v.solidCount, MoveFloating{v, bodies_.data(), motions_.data(), loads_.data(), touches_.data(), fluidMass, hold, kick, drift});
+        device_.forEach(v.solidCount,
+                        MoveFloating{v, bodies_.data(), motions_.data(), loads_.data(),
+                                     touches_.data(), fluidMass, hold, kick, drift});
     }
 
 private:
@@ -282,7 +331,8 @@ private:
         const Convex shape = convexOf(solid, scene.simulation.dimensions);
         double outermost = 0;
         for (const Vec3& p : sampleSolid(scene, solid).positions)
-            outermost += -shape.nearest(toDouble(p + scene.domain.min) - shape.middle).distance <= double(deepestBall(scene));
+            outermost += -shape.nearest(toDouble(p + scene.domain.min) - shape.middle).distance <=
+                         double(deepestBall(scene));
         return std::max(1.0, outermost / (2 * scene.simulation.dimensions));
     }
     static SolidMotion motionAtHome(const Scene& scene, const Solid& solid, const RigidBody& body) {
@@ -291,19 +341,20 @@ private:
         m.place = Vec3d{home.middle.x, home.middle.y, home.middle.z} + body.centre;
         m.velocity = toDouble(solid.velocity);
         const int axis = int(solid.spinAxis);
-        m.angularMomentum = (double(solid.spin) * std::numbers::pi / 180) * massOf(scene, solid).inertia[axis];
+        m.angularMomentum =
+            (double(solid.spin) * std::numbers::pi / 180) * massOf(scene, solid).inertia[axis];
         return m;
     }
 
     Device& device_;
     std::vector<RigidBody> onHost_;
-    std::vector<double> faces_;   // balls of a face of each
+    std::vector<double> faces_;  // balls of a face of each
     Springs springs_{};
     Buffer<RigidBody, Device> bodies_{device_};
     Buffer<SolidMotion, Device> motions_{device_};
     Buffer<SolidLoad, Device> loads_{device_};
     Buffer<Touch, Device> touches_{device_}, also_{device_};
-    Buffer<real, Device> change_{device_}, stoppedBy_{device_};   // of fluid, see Bounces
+    Buffer<real, Device> change_{device_}, stoppedBy_{device_};  // of fluid, see Bounces
 };
 
 }  // namespace spindrift::LANES

@@ -5,17 +5,21 @@
 
 namespace spindrift::LANES {
 
-// What integrators are made of: v += a dt (Kick), x += v dt (Drift); who leaves the box is put back on its face and bounces, or
-// enters on the other side. In parts where rates of velocity's neighbours come between: of density, and of shifting.
+// What integrators are made of: v += a dt (Kick), x += v dt (Drift); who leaves the box is put back
+// on its face and bounces, or enters on the other side. In parts where rates of velocity's
+// neighbours come between: of density, and of shifting.
 enum Advance : unsigned {
-    Kick = 1, HalfKick = 2,                 // half: by dt / 2
-    Drift = 4, HalfDrift = 8,
-    DriftDensity = 16, DriftShifted = 32,   // with Drift: these as well
-    KeepVolume = 64,                        // of all particles, by their densities
-    Keep = 128,                             // first: position, velocity and density are kept
-    Resume = 256,                           // starts from what was kept instead of what is there
-    KeepVelocity = 512,                     // last, but before KickOn
-    KickOn = 1024                           // last: another half kick
+    Kick = 1,
+    HalfKick = 2,  // half: by dt / 2
+    Drift = 4,
+    HalfDrift = 8,
+    DriftDensity = 16,
+    DriftShifted = 32,   // with Drift: these as well
+    KeepVolume = 64,     // of all particles, by their densities
+    Keep = 128,          // first: position, velocity and density are kept
+    Resume = 256,        // starts from what was kept instead of what is there
+    KeepVelocity = 512,  // last, but before KickOn
+    KickOn = 1024        // last: another half kick
 };
 
 template <unsigned what> struct Integrate {
@@ -23,8 +27,9 @@ template <unsigned what> struct Integrate {
     using R = Real<Quad>;
     View v;
     HD void operator()(Quad i) const {
-        if (!isDue<NotDue>(v.fluid, i)) return;   // its cluster rests
-        const R dt = real(v.state->dt), half = real(0.5) * real(v.state->dt), way = what & HalfDrift ? half : dt;
+        if (!isDue<NotDue>(v.fluid, i)) return;  // its cluster rests
+        const R dt = real(v.state->dt), half = real(0.5) * real(v.state->dt),
+                way = what & HalfDrift ? half : dt;
         constexpr bool resumesVelocity = (what & Resume) && (what & (Kick | HalfKick));
         Vector<R> u = load(resumesVelocity ? v.fluid.keptVelocity : v.fluid.velocity, i);
         if constexpr (what & Keep) keep(i, u);
@@ -41,17 +46,19 @@ template <unsigned what> struct Integrate {
         store(v.fluid.keptVelocity, i, u);
         if constexpr (what & DriftDensity) store(v.fluid.keptDensity, i, load(v.fluid.density, i));
     }
-    // Empty slots see each other as well: in thick fluid their speed would grow until it is none, and a neighbour's weight of 0 times that
-    // is no number.
+    // Empty slots see each other as well: in thick fluid their speed would grow until it is none,
+    // and a neighbour's weight of 0 times that is no number.
     HD Vector<R> resting(Quad i, Vector<R> u) const {
         const auto empty = load(v.fluid.position, i).x > R(farAway);
         const R zero = 0;
         return {select(empty, zero, u.x), select(empty, zero, u.y), select(empty, zero, u.z)};
     }
-    // Where fluid fills its space and gradients are differences, a pressure that is the same everywhere does nothing, and its
-    // drift, the sum of small errors of div u, is taken out by keeping the volume of all particles.
+    // Where fluid fills its space and gradients are differences, a pressure that is the same
+    // everywhere does nothing, and its drift, the sum of small errors of div u, is taken out by
+    // keeping the volume of all particles.
     HD void driftDensity(Quad i, R dt) const {
-        R rho = mulAdd(dt, load(v.fluid.densityRate, i), load(what & Resume ? v.fluid.keptDensity : v.fluid.density, i));
+        R rho = mulAdd(dt, load(v.fluid.densityRate, i),
+                       load(what & Resume ? v.fluid.keptDensity : v.fluid.density, i));
         if constexpr (what & KeepVolume) rho = R(real(v.state->volume)) * rho;
         // Empty slots lie in few places and see each other there.
         const auto empty = load(v.fluid.position, i).x > R(farAway);
@@ -66,9 +73,12 @@ template <unsigned what> struct Integrate {
             u = addScaled(u, dt, load(v.fluid.shiftAcceleration, i));
         }
         const Vector<R> unwrapped = x;
-        v.c.period.x > 0 ? wrap(x.x, v.c.period.x) : bounce(x.x, v.c.low.x, v.c.high.x, u.x, u.y, u.z);
-        v.c.period.y > 0 ? wrap(x.y, v.c.period.y) : bounce(x.y, v.c.low.y, v.c.high.y, u.y, u.z, u.x);
-        v.c.period.z > 0 ? wrap(x.z, v.c.period.z) : bounce(x.z, v.c.low.z, v.c.high.z, u.z, u.x, u.y);
+        v.c.period.x > 0 ? wrap(x.x, v.c.period.x)
+                         : bounce(x.x, v.c.low.x, v.c.high.x, u.x, u.y, u.z);
+        v.c.period.y > 0 ? wrap(x.y, v.c.period.y)
+                         : bounce(x.y, v.c.low.y, v.c.high.y, u.y, u.z, u.x);
+        v.c.period.z > 0 ? wrap(x.z, v.c.period.z)
+                         : bounce(x.z, v.c.low.z, v.c.high.z, u.z, u.x, u.y);
         store(v.fluid.position, i, keepEmpty(before, x));
         if ((what & Drift) && v.solidCount > 0) keepWay(i, from, unwrapped, keepEmpty(before, x));
     }
@@ -82,11 +92,13 @@ template <unsigned what> struct Integrate {
     // The box would pull empty slots in among the particles.
     HD static Vector<R> keepEmpty(Vector<R> before, Vector<R> after) {
         const auto empty = before.x > R(farAway);
-        return {select(empty, before.x, after.x), select(empty, before.y, after.y), select(empty, before.z, after.z)};
+        return {select(empty, before.x, after.x), select(empty, before.y, after.y),
+                select(empty, before.z, after.z)};
     }
     HD static void wrap(R& x, real period) { x = x - R(period) * roundDown(x * R(1 / period)); }
     HD void bounce(R& x, real low, real high, R& normal, R& tangent1, R& tangent2) const {
-        const R inside = min(R(high), max(R(low), x));   // in this order what is no number stays none
+        const R inside =
+            min(R(high), max(R(low), x));  // in this order what is no number stays none
         const R depth = (x - inside) * (x - inside);
         const auto hit = depth > R(0);
         normal = select(hit, R(-v.c.restitution) * normal, normal);

@@ -1,5 +1,5 @@
-// Smoothing kernels as functions of q = |x| / R, R the support radius, in d dimensions. Each vanishes for q >= 1 by
-// itself, so that lanes whose neighbour is too far need no mask.
+// Smoothing kernels as functions of q = |x| / R, R the support radius, in d dimensions. Each
+// vanishes for q >= 1 by itself, so that lanes whose neighbour is too far need no mask.
 //     W = norm(d) / R^d * w(q)        grad W = gradient(d) norm(d) / R^(d+2) * g(q) * x
 #pragma once
 
@@ -24,7 +24,9 @@ struct WendlandC2Kernel {
 
 // Wendland 1995, C4: w = (1-q)^6 (1 + 6q + 35/3 q^2), g = (1-q)^5 (1+5q).
 struct WendlandC4Kernel {
-    static constexpr double norm(int d) { return (d == 2 ? 9 : 495.0 / 32) / 3.14159265358979323846; }
+    static constexpr double norm(int d) {
+        return (d == 2 ? 9 : 495.0 / 32) / 3.14159265358979323846;
+    }
     static constexpr double gradient(int) { return -56.0 / 3; }
     template <class R> HD static R w(R q) {
         const R t = max(R(1) - q, R(0)), t2 = t * t;
@@ -38,7 +40,9 @@ struct WendlandC4Kernel {
 
 // Wendland 1995, C6: w = (1-q)^8 (1 + 8q + 25q^2 + 32q^3), g = (1-q)^7 (1 + 7q + 16q^2).
 struct WendlandC6Kernel {
-    static constexpr double norm(int d) { return (d == 2 ? 78.0 / 7 : 1365.0 / 64) / 3.14159265358979323846; }
+    static constexpr double norm(int d) {
+        return (d == 2 ? 78.0 / 7 : 1365.0 / 64) / 3.14159265358979323846;
+    }
     static constexpr double gradient(int) { return -22; }
     template <class R> HD static R w(R q) {
         const R t = max(R(1) - q, R(0)), t2 = t * t, t4 = t2 * t2;
@@ -50,10 +54,12 @@ struct WendlandC6Kernel {
     }
 };
 
-// Morris 1997, quintic spline with s = 3q: w = (3-s)^5 - 6(2-s)^5 + 15(1-s)^5, each bracket only where positive. Their h is
-// a third of the support.
+// Morris 1997, quintic spline with s = 3q: w = (3-s)^5 - 6(2-s)^5 + 15(1-s)^5, each bracket only
+// where positive. Their h is a third of the support.
 struct QuinticSplineKernel {
-    static constexpr double norm(int d) { return (d == 2 ? 63.0 / 478 : 9.0 / 40) / 3.14159265358979323846; }
+    static constexpr double norm(int d) {
+        return (d == 2 ? 63.0 / 478 : 9.0 / 40) / 3.14159265358979323846;
+    }
     static constexpr double gradient(int) { return -45; }
     template <class R> HD static R fifth(R t) {
         const R t2 = t * t;
@@ -74,7 +80,8 @@ struct QuinticSplineKernel {
     }
 };
 
-// Monaghan 1992, cubic spline with s = 2q: w = (2-s)^3/4 - (1-s)^3, each bracket only where positive.
+// Monaghan 1992, cubic spline with s = 2q: w = (2-s)^3/4 - (1-s)^3, each bracket only where
+// positive.
 struct CubicSplineKernel {
     static constexpr double norm(int d) { return (d == 2 ? 40.0 / 7 : 8) / 3.14159265358979323846; }
     static constexpr double gradient(int) { return 1; }
@@ -89,10 +96,13 @@ struct CubicSplineKernel {
     }
 };
 
-// Mueller 2003, three kernels in one: densities by poly6, w = (1-q^2)^3; gradients by the spiky kernel, g = (1-q)^2 / q; viscosity by
-// the one with a Laplacian that is positive everywhere, (1-q). In two dimensions with the spiky kernel's norm there, 10 / pi.
+// Mueller 2003, three kernels in one: densities by poly6, w = (1-q^2)^3; gradients by the spiky
+// kernel, g = (1-q)^2 / q; viscosity by the one with a Laplacian that is positive everywhere,
+// (1-q). In two dimensions with the spiky kernel's norm there, 10 / pi.
 struct MuellerKernel {
-    static constexpr double norm(int d) { return (d == 2 ? 4 : 315.0 / 64) / 3.14159265358979323846; }
+    static constexpr double norm(int d) {
+        return (d == 2 ? 4 : 315.0 / 64) / 3.14159265358979323846;
+    }
     static constexpr double gradient(int d) { return d == 2 ? -7.5 : -64.0 / 7; }
     template <class R> HD static R w(R q) {
         const R t = max(negMulAdd(q, q, R(1)), R(0));
@@ -106,11 +116,13 @@ struct MuellerKernel {
     template <class R> HD static R viscous(R q) { return max(R(1) - q, R(0)); }
 };
 
-// What sums for Laplacians weigh differences with: (x.grad W) / d^2 as Morris 1997 does, hence g, unless a kernel has its own. What a unit of it
-// comes to is found on the lattice (constants.h).
+// What sums for Laplacians weigh differences with: (x.grad W) / d^2 as Morris 1997 does, hence g,
+// unless a kernel has its own. What a unit of it comes to is found on the lattice (constants.h).
 template <class Kernel, class R> HD inline R viscous(R q) {
-    if constexpr (requires { Kernel::viscous(q); }) return Kernel::viscous(q);
-    else return Kernel::g(q);
+    if constexpr (requires { Kernel::viscous(q); })
+        return Kernel::viscous(q);
+    else
+        return Kernel::g(q);
 }
 
 // Of means that are the same whichever kernel a scene has.
@@ -119,12 +131,18 @@ using MeanKernel = WendlandC2Kernel;
 // Calls f with the kernel of that name.
 template <class F> auto withKernel(Kernel kernel, F f) {
     switch (kernel) {
-        case Kernel::CubicSpline: return f(CubicSplineKernel{});
-        case Kernel::WendlandC4: return f(WendlandC4Kernel{});
-        case Kernel::WendlandC6: return f(WendlandC6Kernel{});
-        case Kernel::QuinticSpline: return f(QuinticSplineKernel{});
-        case Kernel::Mueller: return f(MuellerKernel{});
-        case Kernel::WendlandC2: break;
+        case Kernel::CubicSpline:
+            return f(CubicSplineKernel{});
+        case Kernel::WendlandC4:
+            return f(WendlandC4Kernel{});
+        case Kernel::WendlandC6:
+            return f(WendlandC6Kernel{});
+        case Kernel::QuinticSpline:
+            return f(QuinticSplineKernel{});
+        case Kernel::Mueller:
+            return f(MuellerKernel{});
+        case Kernel::WendlandC2:
+            break;
     }
     return f(WendlandC2Kernel{});
 }

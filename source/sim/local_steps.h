@@ -1,7 +1,9 @@
-// Steps of their own for particles (time.mode local). A step of the whole is twice what cfl says; in it each particle takes one, two, four, ...
-// steps, as its speed and acceleration ask for, and forces are evaluated only where a particle is due. A particle's velocity changes where its
-// own step begins, so that in between it is where its straight line leads: neighbours see nothing extrapolated. Blocks of cells whose
-// surroundings have been calm for long rest: they are neither evaluated nor moved until something comes near.
+// Steps of their own for particles (time.mode local). A step of the whole is twice what cfl says;
+// in it each particle takes one, two, four, ... steps, as its speed and acceleration ask for, and
+// forces are evaluated only where a particle is due. A particle's velocity changes where its own
+// step begins, so that in between it is where its straight line leads: neighbours see nothing
+// extrapolated. Blocks of cells whose surroundings have been calm for long rest: they are neither
+// evaluated nor moved until something comes near.
 #pragma once
 
 #include "device/buffer.h"
@@ -13,20 +15,28 @@ namespace spindrift::LANES {
 
 // Parts of a step that particles' own steps are whole numbers of: 1/64 is the shortest.
 inline constexpr int deepestLevel = 6, parts = 1 << deepestLevel;
-// Who rests is decided every few steps, in which nothing crosses a spacing. So many decisions a block's surroundings must have been calm for before
-// it rests, and so many after which it wakes if any neighbour is awake: each time that nothing has come of it twice as many. (Always as many, and a
-// still pool of 18,000 was not at rest after 16 s; so it is after 6.5.)
-inline constexpr int stepsToDecide = 8, calmDecisions = 32, firstNap = 96, longestNap = 64 * firstNap;
+// Who rests is decided every few steps, in which nothing crosses a spacing. So many decisions a
+// block's surroundings must have been calm for before it rests, and so many after which it wakes if
+// any neighbour is awake: each time that nothing has come of it twice as many. (Always as many, and
+// a still pool of 18,000 was not at rest after 16 s; so it is after 6.5.)
+inline constexpr int stepsToDecide = 8, calmDecisions = 32, firstNap = 96,
+                     longestNap = 64 * firstNap;
 HD inline bool decides(const StepState& s) { return s.moment == 0 && s.steps % stepsToDecide == 0; }
 
 HD inline bool isDue(real level, const StepState& s) { return level >= real(s.level); }
 
-// f(first, end) for the stretches of slots that block b is, of fluid or walls, by where particles were sorted in.
-template <class F> HD inline void forStretches(const View& v, const int* cellStart, int b, const F& f) {
+// f(first, end) for the stretches of slots that block b is, of fluid or walls, by where particles
+// were sorted in.
+template <class F>
+HD inline void forStretches(const View& v, const int* cellStart, int b, const F& f) {
     const Blocks& blocks = v.blocks;
-    const Int3 at{b % blocks.count.x, b / blocks.count.x % blocks.count.y, b / (blocks.count.x * blocks.count.y)};
-    auto end = [](int k, int count, int size, int cells) { return k + 1 == count ? cells : (k + 1) * size; };
-    const int lastX = end(at.x, blocks.count.x, blocks.size.x, v.grid.cells.x), lastY = end(at.y, blocks.count.y, blocks.size.y, v.grid.cells.y);
+    const Int3 at{b % blocks.count.x, b / blocks.count.x % blocks.count.y,
+                  b / (blocks.count.x * blocks.count.y)};
+    auto end = [](int k, int count, int size, int cells) {
+        return k + 1 == count ? cells : (k + 1) * size;
+    };
+    const int lastX = end(at.x, blocks.count.x, blocks.size.x, v.grid.cells.x),
+              lastY = end(at.y, blocks.count.y, blocks.size.y, v.grid.cells.y);
     const int lastZ = end(at.z, blocks.count.z, blocks.size.z, v.grid.cells.z);
     for (int z = at.z * blocks.size.z; z < lastZ; ++z)
         for (int y = at.y * blocks.size.y; y < lastY; ++y) {
@@ -35,7 +45,8 @@ template <class F> HD inline void forStretches(const View& v, const int* cellSta
         }
 }
 // f(i) for its particles.
-template <class F> HD inline void forParticles(const View& v, const int* cellStart, int b, const F& f) {
+template <class F>
+HD inline void forParticles(const View& v, const int* cellStart, int b, const F& f) {
     forStretches(v, cellStart, b, [&](int first, int end) {
         for (int i = first; i < end; ++i) f(i);
     });
@@ -50,7 +61,8 @@ template <class F> HD inline void forBlocksAround(const View& v, int b, const F&
     for (int c = first(z, v.grid.wraps.z); c <= last(z, n.z, v.grid.wraps.z); ++c)
         for (int r = first(y, v.grid.wraps.y); r <= last(y, n.y, v.grid.wraps.y); ++r)
             for (int a = first(x, v.grid.wraps.x); a <= last(x, n.x, v.grid.wraps.x); ++a)
-                f((Grid::wrapped(c, n.z) * n.y + Grid::wrapped(r, n.y)) * n.x + Grid::wrapped(a, n.x));
+                f((Grid::wrapped(c, n.z) * n.y + Grid::wrapped(r, n.y)) * n.x +
+                  Grid::wrapped(a, n.x));
 }
 
 // At the beginning of a step: how long it is. It ends where the run is to be looked at.
@@ -59,7 +71,8 @@ struct BeginStep {
     View v;
     HD void operator()(int) const {
         StepState& s = *v.state;
-        if (s.moment == 0) s.longest = untilStop(s, min(real(2) * acousticStep(v.c, real(s.speed)), v.c.maxStep));
+        if (s.moment == 0)
+            s.longest = untilStop(s, min(real(2) * acousticStep(v.c, real(s.speed)), v.c.maxStep));
     }
 };
 
@@ -85,8 +98,9 @@ struct MeasureBlocks {
     }
 };
 
-// Who rests: blocks whose surroundings have long been slower than restSpeed c. They wake when something faster comes near, and after a while if
-// any of their neighbours is awake, for these may have changed slowly. Fluid that rests doesn't move at all.
+// Who rests: blocks whose surroundings have long been slower than restSpeed c. They wake when
+// something faster comes near, and after a while if any of their neighbours is awake, for these may
+// have changed slowly. Fluid that rests doesn't move at all.
 struct RestBlocks {
     using Index = int;
     View v;
@@ -94,7 +108,7 @@ struct RestBlocks {
         if (!decides(*v.state)) return;
         int &calm = v.blocks.calm[b], &nap = v.blocks.nap[b];
         const bool rested = calm >= calmDecisions;
-        if (!rested && v.blocks.speed2[b] < 0) return;   // nobody is here
+        if (!rested && v.blocks.speed2[b] < 0) return;  // nobody is here
         real speed2 = -1;
         forBlocksAround(v, b, [&](int other) { speed2 = max(speed2, v.blocks.speed2[other]); });
         const real rest = v.c.restSpeed * v.c.soundSpeed, limit = rested ? wake * rest : rest;
@@ -121,7 +135,8 @@ struct FindDueClusters {
     View v;
     HD void operator()(int cluster) const {
         real shortest = resting;
-        for (int i = cluster * clusterSize; i < (cluster + 1) * clusterSize; ++i) shortest = max(shortest, load(v.fluid.level, i));
+        for (int i = cluster * clusterSize; i < (cluster + 1) * clusterSize; ++i)
+            shortest = max(shortest, load(v.fluid.level, i));
         v.fluid.due[cluster] = isDue(shortest, *v.state) ? Due : shortest < 0 ? Resting : NotDue;
     }
 };
@@ -131,7 +146,8 @@ struct FindDueBlocks {
     HD void operator()(int b) const {
         bool due = false;
         forStretches(v, v.fluidNearFluid.cellStart, b, [&](int first, int end) {
-            for (int c = first / clusterSize; c * clusterSize < end; ++c) due = due || v.fluid.due[c] == Due;
+            for (int c = first / clusterSize; c * clusterSize < end; ++c)
+                due = due || v.fluid.due[c] == Due;
         });
         v.blocks.due[b] = due;
     }
@@ -144,18 +160,23 @@ struct FindNearBlocks {
         bool near = false, rests = false;
         forBlocksAround(v, b, [&](int other) { near = near || v.blocks.due[other]; });
         if (near)
-            forParticles(v, v.fluidNearFluid.cellStart, b, [&](int i) { rests = rests || (load(v.fluid.level, i) < 0 && v.fluid.id[i] >= 0); });
+            forParticles(v, v.fluidNearFluid.cellStart, b, [&](int i) {
+                rests = rests || (load(v.fluid.level, i) < 0 && v.fluid.id[i] >= 0);
+            });
         v.blocks.near[b] = rests ? Watched : near ? NearDue : NotDue;
     }
 };
-// Of these blocks the clusters of fluid and walls; and of those around watched ones, whose pairs with them count as well.
+// Of these blocks the clusters of fluid and walls; and of those around watched ones, whose pairs
+// with them count as well.
 struct SpreadDue {
     using Index = int;
     View v;
     HD void operator()(int b) const {
         const uint8_t near = v.blocks.near[b];
         bool besideWatched = near != NotDue;
-        forBlocksAround(v, b, [&](int other) { besideWatched = besideWatched || v.blocks.near[other] == Watched; });
+        forBlocksAround(v, b, [&](int other) {
+            besideWatched = besideWatched || v.blocks.near[other] == Watched;
+        });
         if (!besideWatched) return;
         forStretches(v, v.fluidNearFluid.cellStart, b, [&](int first, int end) {
             for (int c = first / clusterSize; c * clusterSize < end; ++c)
@@ -163,16 +184,20 @@ struct SpreadDue {
         });
         if (near == NotDue) return;
         forStretches(v, v.wallsNearFluid.cellStart, b, [&](int first, int end) {
-            for (int c = first / clusterSize; c * clusterSize < end; ++c) raise(v.walls.due[c], Due);
+            for (int c = first / clusterSize; c * clusterSize < end; ++c)
+                raise(v.walls.due[c], Due);
         });
     }
-    // Blocks may share a cluster, which is then the most that any of them says. (One that is a single particle has a single block.)
+    // Blocks may share a cluster, which is then the most that any of them says. (One that is a
+    // single particle has a single block.)
     HD static void raise(uint8_t& flag, uint8_t value) {
 #ifdef __CUDA_ARCH__
         if (flag < value) flag = value;
 #else
         uint8_t before = __atomic_load_n(&flag, __ATOMIC_RELAXED);
-        while (before < value && !__atomic_compare_exchange_n(&flag, &before, value, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {}
+        while (before < value && !__atomic_compare_exchange_n(&flag, &before, value, true,
+                                                              __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
+        }
 #endif
     }
 };
@@ -182,9 +207,10 @@ struct ForgetDue {
     HD void operator()(int cluster) const { p.due[cluster] = NotDue; }
 };
 
-// Where a particle's own step begins: how long it is, and v += a dt. The longest is for calm fluid, dt <= 0.05 sqrt(h/(eps+|a|)) and 0.1 h/(eps+|u|)
-// for cfl = 0.4, in the form of Reinhardt 2017 (there 0.02 and 0.05, with which half of a dam break takes half the step and errors are the same);
-// the rest takes what would be good for all if all were like it.
+// Where a particle's own step begins: how long it is, and v += a dt. The longest is for calm fluid,
+// dt <= 0.05 sqrt(h/(eps+|a|)) and 0.1 h/(eps+|u|) for cfl = 0.4, in the form of Reinhardt 2017
+// (there 0.02 and 0.05, with which half of a dam break takes half the step and errors are the
+// same); the rest takes what would be good for all if all were like it.
 struct KickDue {
     using Index = Quad;
     using R = Real<Quad>;
@@ -196,7 +222,8 @@ struct KickDue {
         const R pull = squareRoot(dot(a, a)) + R(little), speed = squareRoot(dot(u, u)) + R(little);
         const R h = v.c.support / 2, cfl = v.c.cfl, fall = squareRoot(h / pull);
         const R calm = cfl * min(R(real(0.125)) * fall, R(real(0.25)) * h / speed);
-        const R wanted = max(calm, min(cfl * h / (R(v.c.soundSpeed) + speed), R(real(0.25)) * fall));
+        const R wanted =
+            max(calm, min(cfl * h / (R(v.c.soundSpeed) + speed), R(real(0.25)) * fall));
         R step = real(v.state->longest / (1 << v.state->level)), level = now;
         for (int k = v.state->level; k < deepestLevel; ++k) {
             const auto tooLong = step > wanted;
@@ -207,12 +234,12 @@ struct KickDue {
         store(v.fluid.level, i, select(isDue, level, before));
         store(v.fluid.velocity, i, addScaled(u, select(isDue, step, R(0)), a));
     }
-    static constexpr real little = real(1e-3);   // m/s, m/s²
+    static constexpr real little = real(1e-3);  // m/s, m/s²
 };
 
 // The largest speed, the deepest level, and how many particles were awake and due.
 struct Motion {
-    float speed2 = 0;   // (m/s)^2
+    float speed2 = 0;  // (m/s)^2
     int deepest = 0;
     double awake = 0, due = 0;
     HD_OUT void add(const Motion& o) {
@@ -237,7 +264,7 @@ struct ChooseMoment {
     using Index = int;
     View v;
     const Motion* motion;
-    int count;   // of particles
+    int count;  // of particles
     HD void operator()(int) const {
         StepState& s = *v.state;
         const int part = parts >> motion->deepest, next = (s.moment / part + 1) * part;
@@ -270,12 +297,17 @@ struct WakeBlocks {
 template <class Device> class LocalSteps {
 public:
     explicit LocalSteps(Device& device) : device_(device) {}
-    // Blocks are whole cells and no smaller than `reach` (m), no less than that of neighbours: these lie in blocks that touch.
+    // Blocks are whole cells and no smaller than `reach` (m), no less than that of neighbours:
+    // these lie in blocks that touch.
     void resize(const Grid& grid, real reach) {
-        auto along = [&](int cells, real perMetre) { return std::clamp(int(std::ceil(double(reach * perMetre))), 1, cells); };
-        size_ = {along(grid.cells.x, grid.perMetre.x), along(grid.cells.y, grid.perMetre.y), along(grid.cells.z, grid.perMetre.z)};
+        auto along = [&](int cells, real perMetre) {
+            return std::clamp(int(std::ceil(double(reach * perMetre))), 1, cells);
+        };
+        size_ = {along(grid.cells.x, grid.perMetre.x), along(grid.cells.y, grid.perMetre.y),
+                 along(grid.cells.z, grid.perMetre.z)};
         count_ = {grid.cells.x / size_.x, grid.cells.y / size_.y, grid.cells.z / size_.z};
-        speed2_.resize(blocks()), calm_.resize(blocks()), nap_.resize(blocks()), due_.resize(blocks()), near_.resize(blocks());
+        speed2_.resize(blocks()), calm_.resize(blocks()), nap_.resize(blocks()),
+            due_.resize(blocks()), near_.resize(blocks());
         motion_.resize(1);
         wake();
     }
@@ -283,7 +315,10 @@ public:
     bool used() const { return speed2_.size() > 0; }
     size_t blocks() const { return size_t(count_.x) * size_t(count_.y) * size_t(count_.z); }
     Motion* motion() { return motion_.data(); }
-    Blocks view() const { return {count_, size_, speed2_.data(), calm_.data(), nap_.data(), due_.data(), near_.data()}; }
+    Blocks view() const {
+        return {count_,      size_,       speed2_.data(), calm_.data(),
+                nap_.data(), due_.data(), near_.data()};
+    }
 
 private:
     Device& device_;

@@ -20,19 +20,24 @@ static int threadCount(const Scene& scene) {
 static int deviceOf(const Scene& scene) { return std::max(scene.compute.device, 0); }
 
 std::string whyNoGpu(const Scene& scene) {
-    if (scene.compute.precision == Precision::Double) return "double precision is computed on the CPU only; use float";
+    if (scene.compute.precision == Precision::Double)
+        return "double precision is computed on the CPU only; use float";
     return cudaProblem(deviceOf(scene));
 }
 
-// Asked before anything is taken: a GPU's memory is not swapped, and a half-built run would be of no use.
+// Asked before anything is taken: a GPU's memory is not swapped, and a half-built run would be of
+// no use.
 static std::string whyTooLargeForGpu(const Scene& scene, ParticleCount count) {
-    const double GiB = 1 << 30, needed = double(estimateGpuMemory(scene, count)), free = double(cudaFreeMemory(deviceOf(scene)));
+    const double GiB = 1 << 30, needed = double(estimateGpuMemory(scene, count)),
+                 free = double(cudaFreeMemory(deviceOf(scene)));
     if (needed <= free) return "";
     auto inGiB = [&](double bytes) { return std::to_string(bytes / GiB).substr(0, 5) + " GiB"; };
-    return "simulation.spacing: the particles need about " + inGiB(needed) + " of GPU memory, " + inGiB(free) + " are free";
+    return "simulation.spacing: the particles need about " + inGiB(needed) + " of GPU memory, " +
+           inGiB(free) + " are free";
 }
 
-// Asked for CUDA it is CUDA or an error; `auto` takes the GPU when there is one that can do what the scene asks for.
+// Asked for CUDA it is CUDA or an error; `auto` takes the GPU when there is one that can do what
+// the scene asks for.
 static bool runsOnGpu(const Scene& scene, ParticleCount count) {
     if (scene.compute.backend == Backend::Cpu) return false;
     const bool asked = scene.compute.backend == Backend::Cuda;
@@ -47,8 +52,13 @@ static bool runsOnGpu(const Scene& scene, ParticleCount count) {
     return true;
 }
 
-std::unique_ptr<Simulation> makeSimdSimulation(const Scene& scene, const RunState& state, int threads) {
-    struct InstructionSet { Simd name; int64_t target; decltype(&makeSseSimulation) make; };
+std::unique_ptr<Simulation> makeSimdSimulation(const Scene& scene, const RunState& state,
+                                               int threads) {
+    struct InstructionSet {
+        Simd name;
+        int64_t target;
+        decltype(&makeSseSimulation) make;
+    };
     static constexpr InstructionSet sets[] = {
 #ifndef SPINDRIFT_WITHOUT_AVX512
         {Simd::Avx512, HWY_AVX3, makeAvx512Simulation},
@@ -62,8 +72,11 @@ std::unique_ptr<Simulation> makeSimdSimulation(const Scene& scene, const RunStat
     };
     const int64_t machine = hwy::SupportedTargets();
     for (const InstructionSet& set : sets)
-        if ((scene.compute.simd == Simd::Auto || scene.compute.simd == set.name) && (machine & set.target)) return set.make(scene, state, threads);
-    throw Error(Exit::NoDevice, "compute.simd: this processor does not have that instruction set; use auto");
+        if ((scene.compute.simd == Simd::Auto || scene.compute.simd == set.name) &&
+            (machine & set.target))
+            return set.make(scene, state, threads);
+    throw Error(Exit::NoDevice,
+                "compute.simd: this processor does not have that instruction set; use auto");
 }
 
 static std::unique_ptr<Simulation> build(const Scene& scene, const RunState* state) {
@@ -72,18 +85,23 @@ static std::unique_ptr<Simulation> build(const Scene& scene, const RunState* sta
         const RunState start = state ? RunState() : RunState(placeParticles(scene));
         const RunState& from = state ? *state : start;
         if (from.particles.positions.empty())
-            throw Error(Exit::Scene,
-                        "fluid.bodies: not one particle fits into them beside the solids and objects; "
-                        "move or shrink those, a mesh whose file is in millimetres by its scale");
+            throw Error(
+                Exit::Scene,
+                "fluid.bodies: not one particle fits into them beside the solids and objects; "
+                "move or shrink those, a mesh whose file is in millimetres by its scale");
         if (gpu) return makeCudaSimulation(scene, from, deviceOf(scene));
-        return scene.compute.precision == Precision::Double ? makeDoubleSimulation(scene, from, threadCount(scene))
-                                                            : makeSimdSimulation(scene, from, threadCount(scene));
+        return scene.compute.precision == Precision::Double
+                   ? makeDoubleSimulation(scene, from, threadCount(scene))
+                   : makeSimdSimulation(scene, from, threadCount(scene));
     } catch (const std::bad_alloc&) {
-        throw Error(Exit::Memory, "out of memory while building the particles; use a larger simulation.spacing");
+        throw Error(Exit::Memory,
+                    "out of memory while building the particles; use a larger simulation.spacing");
     }
 }
 
 std::unique_ptr<Simulation> makeSimulation(const Scene& scene) { return build(scene, nullptr); }
-std::unique_ptr<Simulation> makeSimulation(const Scene& scene, const RunState& state) { return build(scene, &state); }
+std::unique_ptr<Simulation> makeSimulation(const Scene& scene, const RunState& state) {
+    return build(scene, &state);
+}
 
 }  // namespace spindrift

@@ -12,7 +12,8 @@ inline std::string cpuName(int threads, const std::string& lanes) {
 }
 
 // They start from a state, or from the placement of a run that begins.
-// On the instruction set asked for, or the best one that the processor has. Throws Error (NoDevice).
+// On the instruction set asked for, or the best one that the processor has. Throws Error
+// (NoDevice).
 std::unique_ptr<Simulation> makeSimdSimulation(const Scene&, const RunState&, int threads);
 // For processors that have it.
 std::unique_ptr<Simulation> makeAvx512Simulation(const Scene&, const RunState&, int threads);

@@ -1,7 +1,8 @@
-// The one neighbour loop. f(pair, j) is called with every particle j of the other set nearer than the support
-// radius R, the particle itself included when it is of the same set; with SIMD also with some that are further
-// away, which kernels turn into zeros. The first pass of a step, `Prune`, notes for the later ones, `Pruned`, which
-// clusters are worth a look; lists that are read but once a step are not pruned, `All`.
+// The one neighbour loop. f(pair, j) is called with every particle j of the other set nearer than
+// the support radius R, the particle itself included when it is of the same set; with SIMD also
+// with some that are further away, which kernels turn into zeros. The first pass of a step,
+// `Prune`, notes for the later ones, `Pruned`, which clusters are worth a look; lists that are read
+// but once a step are not pruned, `All`.
 #pragma once
 
 #include "sim/view.h"
@@ -9,10 +10,10 @@
 namespace spindrift::LANES {
 
 template <class R> struct Pair {
-    Vector<R> r;             // x_i - x_j, m
-    R distance2;             // m^2
-    R q;                     // distance / R
-    R inverseDistance2;      // 1 / (distance^2 + eta^2), finite everywhere
+    Vector<R> r;         // x_i - x_j, m
+    R distance2;         // m^2
+    R q;                 // distance / R
+    R inverseDistance2;  // 1 / (distance^2 + eta^2), finite everywhere
 };
 
 // Of all images of a neighbour the nearest one. Empty slots, which lie many periods away, stay far.
@@ -23,7 +24,8 @@ template <class R> HD inline R nearestImage(R r, real period, real inversePeriod
 
 template <class R> HD inline Vector<R> imageOf(const Constants& c, Vector<R> r) {
     if (c.periodic)
-        r = {nearestImage(r.x, c.period.x, c.inversePeriod.x), nearestImage(r.y, c.period.y, c.inversePeriod.y),
+        r = {nearestImage(r.x, c.period.x, c.inversePeriod.x),
+             nearestImage(r.y, c.period.y, c.inversePeriod.y),
              nearestImage(r.z, c.period.z, c.inversePeriod.z)};
     return r;
 }
@@ -42,7 +44,8 @@ inline constexpr bool prunes = Group::size == clusterSize;
 
 // With `due` only clusters of which it says at least `from`.
 template <Lists lists, uint8_t from = Due, class F>
-HD inline void forNeighbours(const View& v, const Neighbourhood& near, Group i, Vector<Wide> xi, const F& f, const uint8_t* due = nullptr) {
+HD inline void forNeighbours(const View& v, const Neighbourhood& near, Group i, Vector<Wide> xi,
+                             const F& f, const uint8_t* due = nullptr) {
     ClusterList& list = near.lists[i.first / clusterSize];
     const bool pruned = prunes && lists == Lists::Pruned;
     const uint32_t* clusters = pruned ? list.pruned : list.clusters;
@@ -61,16 +64,18 @@ HD inline void forNeighbours(const View& v, const Neighbourhood& near, Group i, 
     if constexpr (prunes && lists == Lists::Prune) list.prunedCount = kept;
 }
 #else
-// Distance from a coordinate, itself in row `own`, to a row; a bit less, as a particle on a face may have been rounded
-// into the next row.
+// Distance from a coordinate, itself in row `own`, to a row; a bit less, as a particle on a face
+// may have been rounded into the next row.
 HD inline real rowGap(real x, int own, int row, real low, real rowSize) {
-    const real gap = row < own ? x - (low + real(row + 1) * rowSize) : row > own ? low + real(row) * rowSize - x : real(0);
+    const real gap = row < own   ? x - (low + real(row + 1) * rowSize)
+                     : row > own ? low + real(row) * rowSize - x
+                                 : real(0);
     return max(gap - real(1e-3) * rowSize, real(0));
 }
 
 // Rows of cells within reach; of each row the stretch that the support sphere cuts out.
-template <Lists, class F>
-HD inline void forNeighbours(const View& v, const Neighbourhood& near, int, Vector<real> xi, const F& f) {
+template <Lists, class F> HD inline void forNeighbours(const View& v, const Neighbourhood& near,
+                                                       int, Vector<real> xi, const F& f) {
     const Grid& g = v.grid;
     const real R = v.c.support, rowSizeY = 1 / g.perMetre.y, rowSizeZ = 1 / g.perMetre.z;
     const int ownY = g.rowY(xi.y), y0 = g.rowY(xi.y - R), y1 = g.rowY(xi.y + R);
@@ -83,12 +88,13 @@ HD inline void forNeighbours(const View& v, const Neighbourhood& near, int, Vect
             if (left2 <= 0) continue;
             const real left = squareRoot(left2);
             const int* row = near.cellStart + g.row(y, z);
-            forStretches(g.cellX(xi.x - left), g.cellX(xi.x + left), g.cells.x, [&](int first, int last) {
-                for (int j = row[first], end = row[last + 1]; j < end; ++j) {
-                    const Pair<real> pair = makePair(v.c, xi, load(near.position, j));
-                    if (pair.distance2 < v.c.support2) f(pair, j);
-                }
-            });
+            forStretches(g.cellX(xi.x - left), g.cellX(xi.x + left), g.cells.x,
+                         [&](int first, int last) {
+                             for (int j = row[first], end = row[last + 1]; j < end; ++j) {
+                                 const Pair<real> pair = makePair(v.c, xi, load(near.position, j));
+                                 if (pair.distance2 < v.c.support2) f(pair, j);
+                             }
+                         });
         }
     }
 }

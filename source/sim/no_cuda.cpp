@@ -5,7 +5,9 @@
 
 namespace spindrift {
 
-std::string cudaProblem(int) { return "this build has no CUDA in it; install the CUDA toolkit and build again"; }
+std::string cudaProblem(int) {
+    return "this build has no CUDA in it; install the CUDA toolkit and build again";
+}
 std::string cudaDeviceName(int) { return ""; }
 int64_t cudaFreeMemory(int) { return 0; }
 

@@ -1,4 +1,5 @@
-// What happens to an elastic object's particles in a step: bonds, grips, blades, who presses them, where they go.
+// What happens to an elastic object's particles in a step: bonds, grips, blades, who presses them,
+// where they go.
 #pragma once
 
 #include "scene/motion.h"
@@ -9,23 +10,31 @@
 namespace spindrift::LANES {
 
 // One end's view of a bond; m, N/m. Broken: without stiffness.
-struct BondEnd { int other; real length, stiffness; };
+struct BondEnd {
+    int other;
+    real length, stiffness;
+};
 // What all particles of an object share.
-struct Material { real damping, breakingStrain; };
+struct Material {
+    real damping, breakingStrain;
+};
 // A part of an object that is held; see MotionKey.
-struct GripKeys { int first, end; };
+struct GripKeys {
+    int first, end;
+};
 
 // Particles of all objects in the order of their ids, which are 0, 1, ...
 struct ObjectParticles {
     int count;
-    VectorField position, velocity, acceleration;   // m, m/s, m/s²
-    VectorField home;                               // m, at the start
-    ScalarField mass, radius;                       // kg, m
-    ScalarField torn;                               // 1: a bond of it is broken
-    const int *object, *grip, *firstBond;           // grip -1: nobody holds it; bonds [firstBond[i], firstBond[i + 1])
-    const uint8_t* atSurface;                       // before anything tore
+    VectorField position, velocity, acceleration;  // m, m/s, m/s²
+    VectorField home;                              // m, at the start
+    ScalarField mass, radius;                      // kg, m
+    ScalarField torn;                              // 1: a bond of it is broken
+    const int *object, *grip,
+        *firstBond;            // grip -1: nobody holds it; bonds [firstBond[i], firstBond[i + 1])
+    const uint8_t* atSurface;  // before anything tore
     BondEnd* bonds;
-    int* slot;                                      // where the surface has it, or -1
+    int* slot;  // where the surface has it, or -1
 };
 
 // Positions for the next sort.
@@ -38,7 +47,8 @@ struct FetchPlaces {
     }
 };
 
-// The surface as it is now, in the order of the last sort. What tears open is at the surface from then on.
+// The surface as it is now, in the order of the last sort. What tears open is at the surface from
+// then on.
 struct PlaceSurface {
     using Index = int;
     ObjectParticles o;
@@ -47,7 +57,8 @@ struct PlaceSurface {
         const int id = s.id[i];
         if (id < 0) return storeEmpty(i);
         o.slot[id] = i;
-        store(s.position, i, load(o.position, id)), store(s.velocity, i, load(o.velocity, id)), store(s.home, i, load(o.home, id));
+        store(s.position, i, load(o.position, id)), store(s.velocity, i, load(o.velocity, id)),
+            store(s.home, i, load(o.home, id));
         const real torn = load(o.torn, id);
         store(s.radius, i, o.atSurface[id] || torn > 0 ? load(o.radius, id) : outOfReach);
         store(s.torn, i, torn), store(s.object, i, real(o.object[id]));
@@ -62,7 +73,8 @@ struct PlaceSurface {
     }
 };
 
-// On a particle of an object, N, by the floating solid that it is deepest in, -1: by none. That feels the opposite.
+// On a particle of an object, N, by the floating solid that it is deepest in, -1: by none. That
+// feels the opposite.
 struct Presses {
     VectorField force;
     ScalarField solid;
@@ -74,13 +86,15 @@ struct SumPresses {
     int solid;
     HD void addTo(Touch& sum, int i) const {
         if (load(presses.solid, i) != real(solid)) return;
-        const Vector<real> f = load(presses.force, i), arm = imageOf(v.c, load(o.position, i) - v.solids[solid].centreOfMass);
+        const Vector<real> f = load(presses.force, i),
+                           arm = imageOf(v.c, load(o.position, i) - v.solids[solid].centreOfMass);
         const Vec3d force{-double(f.x), -double(f.y), -double(f.z)};
         sum.add({force, cross(Vec3d{arm.x, arm.y, arm.z}, force)});
     }
 };
 
-// Forces of bonds, damped springs, of contacts and of floating solids; who is stretched too far breaks, and who is cut. Both ends of a bond see the same.
+// Forces of bonds, damped springs, of contacts and of floating solids; who is stretched too far
+// breaks, and who is cut. Both ends of a bond see the same.
 struct StretchBonds {
     using Index = int;
     View v;
@@ -89,7 +103,7 @@ struct StretchBonds {
     const Material* materials;
     const Cut* cuts;
     int cutCount;
-    const RigidBody* bodies;   // null: nothing floats
+    const RigidBody* bodies;  // null: nothing floats
     Springs springs;
     Presses presses;
     HD void operator()(int i) const {
@@ -104,15 +118,18 @@ struct StretchBonds {
             if (bond.stiffness <= 0) continue;
             const Vector<real> other = load(o.position, bond.other), r = imageOf(v.c, other - x);
             const real length = squareRoot(dot(r, r)), strain = length / bond.length - 1;
-            if ((material.breakingStrain > 0 && strain > material.breakingStrain) || isCut(real(0.5) * (x + other))) {
+            if ((material.breakingStrain > 0 && strain > material.breakingStrain) ||
+                isCut(real(0.5) * (x + other))) {
                 bond.stiffness = 0;
                 store(o.torn, i, real(1));
                 continue;
             }
             const Vector<real> n = (1 / max(length, real(1e-12))) * r;
             const real otherMass = load(o.mass, bond.other);
-            const real damping = 2 * material.damping * squareRoot(bond.stiffness * mass * otherMass / (mass + otherMass));
-            const real pull = bond.stiffness * (length - bond.length) + damping * dot(load(o.velocity, bond.other) - u, n);
+            const real damping = 2 * material.damping *
+                                 squareRoot(bond.stiffness * mass * otherMass / (mass + otherMass));
+            const real pull = bond.stiffness * (length - bond.length) +
+                              damping * dot(load(o.velocity, bond.other) - u, n);
             force = addScaled(force, pull, n);
         }
         store(o.acceleration, i, addScaled(bodyForce(v.c, gravityNow(v), x), 1 / mass, force));
@@ -130,11 +147,12 @@ struct StretchBonds {
             if (depth > deepest) deepest = depth, by = s, normal = n, velocity = u - own;
         }
         if (by >= 0) {
-            // One after the other: the particle's spring and the solid's, as one of a face full of those that have room there. (A deepest ball is three
-            // quarters of a spacing.)
+            // One after the other: the particle's spring and the solid's, as one of a face full of
+            // those that have room there. (A deepest ball is three quarters of a spacing.)
             auto series = [](real a, real b) { return a * b / max(a + b, real(1e-30)); };
             RigidBody both = bodies[by];
-            const real across = radius / (both.deepestBall * real(2.0 / 3)), share = min(across * across, real(1));
+            const real across = radius / (both.deepestBall * real(2.0 / 3)),
+                       share = min(across * across, real(1));
             both.stiffness = series(mass * springs.rate * springs.rate, share * both.stiffness);
             both.damping = series(2 * springs.damping * mass * springs.rate, share * both.damping);
             force = SumTouches::press(both, deepest, normal, velocity);
@@ -146,33 +164,40 @@ struct StretchBonds {
     HD bool isCut(Vector<real> middle) const {
         for (int k = 0; k < cutCount; ++k) {
             const Cut& cut = cuts[k];
-            const bool now = v.state->time - v.state->dt <= cut.time && cut.time < v.state->time + 1e-9;
-            if (now && middle.x >= cut.min.x && middle.x <= cut.max.x && middle.y >= cut.min.y && middle.y <= cut.max.y && middle.z >= cut.min.z &&
-                middle.z <= cut.max.z)
+            const bool now =
+                v.state->time - v.state->dt <= cut.time && cut.time < v.state->time + 1e-9;
+            if (now && middle.x >= cut.min.x && middle.x <= cut.max.x && middle.y >= cut.min.y &&
+                middle.y <= cut.max.y && middle.z >= cut.min.z && middle.z <= cut.max.z)
                 return true;
         }
         return false;
     }
 };
 
-// v += a dt, x += v dt; who is held goes where its grip is. The box and solids that don't float keep them inside and out.
+// v += a dt, x += v dt; who is held goes where its grip is. The box and solids that don't float
+// keep them inside and out.
 struct MoveObjects {
     using Index = int;
     View v;
     ObjectParticles o;
     const GripKeys* grips;
     const MotionKey* keys;
-    const RigidBody* bodies;   // null: nothing floats
+    const RigidBody* bodies;  // null: nothing floats
     HD void operator()(int i) const {
         if (o.grip[i] >= 0) return follow(i, grips[o.grip[i]]);
         const real dt = real(v.state->dt), radius = load(o.radius, i);
         Vector<real> u = addScaled(load(o.velocity, i), dt, load(o.acceleration, i));
         Vector<real> x = addScaled(load(o.position, i), dt, u);
         const Constants& c = v.c;
-        c.period.x > 0 ? wrap(x.x, c.period.x) : stop(x.x, u.x, c.low.x + radius, c.high.x - radius);
-        c.period.y > 0 ? wrap(x.y, c.period.y) : stop(x.y, u.y, c.low.y + radius, c.high.y - radius);
-        if (c.dimensions == 3) c.period.z > 0 ? wrap(x.z, c.period.z) : stop(x.z, u.z, c.low.z + radius, c.high.z - radius);
-        else u.z = 0, x.z = load(o.position, i).z;
+        c.period.x > 0 ? wrap(x.x, c.period.x)
+                       : stop(x.x, u.x, c.low.x + radius, c.high.x - radius);
+        c.period.y > 0 ? wrap(x.y, c.period.y)
+                       : stop(x.y, u.y, c.low.y + radius, c.high.y - radius);
+        if (c.dimensions == 3)
+            c.period.z > 0 ? wrap(x.z, c.period.z)
+                           : stop(x.z, u.z, c.low.z + radius, c.high.z - radius);
+        else
+            u.z = 0, x.z = load(o.position, i).z;
         for (int s = 0; s < v.solidCount; ++s)
             if (!bodies || bodies[s].mass <= 0) leave(v.solids[s], radius, x, u);
         store(o.velocity, i, u), store(o.position, i, x);
@@ -180,8 +205,11 @@ struct MoveObjects {
     HD void follow(int i, GripKeys g) const {
         const KeyedMotion m = motionAt(keys, g.first, g.end, v.state->time);
         const Vector<real> home = load(o.home, i);
-        store(o.velocity, i, Vector<real>{real(m.velocity.x), real(m.velocity.y), real(m.velocity.z)});
-        store(o.position, i, Vector<real>{home.x + real(m.offset.x), home.y + real(m.offset.y), home.z + real(m.offset.z)});
+        store(o.velocity, i,
+              Vector<real>{real(m.velocity.x), real(m.velocity.y), real(m.velocity.z)});
+        store(o.position, i,
+              Vector<real>{home.x + real(m.offset.x), home.y + real(m.offset.y),
+                           home.z + real(m.offset.z)});
     }
     HD static void wrap(real& x, real period) { x -= period * roundDown(x / period); }
     HD static void stop(real& x, real& u, real low, real high) {
@@ -199,7 +227,8 @@ struct MoveObjects {
     }
 };
 
-// Particles whose engine is somebody else's: on their way to where that wants them at `arrival`, s, and what they feel until then, N s.
+// Particles whose engine is somebody else's: on their way to where that wants them at `arrival`, s,
+// and what they feel until then, N s.
 struct FollowDriver {
     using Index = int;
     const StepState* state;
@@ -207,11 +236,13 @@ struct FollowDriver {
     VectorField contact, target, impulse;
     double arrival;
     HD void operator()(int i) const {
-        const double left = arrival - (state->time - state->dt);   // the clock is at the step's end
+        const double left = arrival - (state->time - state->dt);  // the clock is at the step's end
         const real share = left > state->dt ? real(state->dt / left) : real(1);
         const Vector<real> x = load(o.position, i);
         store(o.position, i, addScaled(x, share, load(target, i) - x));
-        if (o.slot[i] >= 0) store(impulse, i, addScaled(load(impulse, i), real(state->dt), load(contact, o.slot[i])));
+        if (o.slot[i] >= 0)
+            store(impulse, i,
+                  addScaled(load(impulse, i), real(state->dt), load(contact, o.slot[i])));
     }
 };
 
@@ -219,10 +250,11 @@ struct FollowDriver {
 struct FindObjectSpeed {
     ObjectParticles o;
     const StepState* state;
-    real least;   // m/s, as fast as a driver has them go, whatever velocities it says
+    real least;  // m/s, as fast as a driver has them go, whatever velocities it says
     HD void addTo(Extremes& e, int i) const {
         const Vector<real> u = load(o.velocity, i), a = load(o.acceleration, i);
-        const real speed = squareRoot(dot(u, u)) + (o.grip[i] < 0 ? real(state->dt) * squareRoot(dot(a, a)) : real(0));
+        const real speed = squareRoot(dot(u, u)) +
+                           (o.grip[i] < 0 ? real(state->dt) * squareRoot(dot(a, a)) : real(0));
         e.add({float(max(speed * speed, least * least)), 0});
     }
 };
@@ -232,7 +264,8 @@ struct TakeFaster {
     HD void operator()(int) const { fluid->add(*objects); }
 };
 
-// After fluid and boundary particles: one value for all, by which they are told from those, and their size in the fluid's.
+// After fluid and boundary particles: one value for all, by which they are told from those, and
+// their size in the fluid's.
 struct WriteObjectVertices {
     using Index = int;
     ObjectParticles o;

@@ -27,7 +27,8 @@ public:
         fillVectors(home_, sample_.positions);
         fill(mass_, std::vector<real>(sample_.masses.begin(), sample_.masses.end()));
         fill(radius_, std::vector<real>(sample_.radii.begin(), sample_.radii.end()));
-        fill(object_, sample_.objects), fill(grip_, sample_.grips), fill(atSurface_, sample_.atSurface);
+        fill(object_, sample_.objects), fill(grip_, sample_.grips),
+            fill(atSurface_, sample_.atSurface);
         std::vector<Material> materials;
         for (const Object& o : scene.objects) materials.push_back({o.damping, o.breakingStrain});
         fill(materials_, materials), fill(cuts_, scene.cuts);
@@ -40,28 +41,32 @@ public:
         }
         fill(grips_, grips), fill(keys_, keys);
         if (solidsFloat) press_.resize(vectorSize(padded())), pressedBy_.resize(size_t(padded()));
-        acceleration_.resize(vectorSize(padded())), torn_.resize(sample_.size()), slot_.resize(sample_.size()), speed_.resize(1);
+        acceleration_.resize(vectorSize(padded())), torn_.resize(sample_.size()),
+            slot_.resize(sample_.size()), speed_.resize(1);
         bondEnds();
     }
     // At the beginning, or where a run stands.
     void restart(const Scene& scene, const ObjectState& state) {
         if (count() == 0) return;
         std::vector<Vec3> velocities;
-        for (const int object : sample_.objects) velocities.push_back(scene.objects[size_t(object)].velocity);
+        for (const int object : sample_.objects)
+            velocities.push_back(scene.objects[size_t(object)].velocity);
         fillVectors(position_, state.positions.empty() ? sample_.positions : state.positions);
         fillVectors(velocity_, state.velocities.empty() ? velocities : state.velocities);
         std::vector<BondEnd> bonds = whole_;
         std::vector<real> torn(sample_.size(), 0);
         for (size_t i = 0; i < torn.size(); ++i)
             for (int b = firstBondOnHost_[i]; b < firstBondOnHost_[i + 1]; ++b)
-                if (!state.broken.empty() && state.broken[size_t(b)]) bonds[size_t(b)].stiffness = 0, torn[i] = 1;
+                if (!state.broken.empty() && state.broken[size_t(b)])
+                    bonds[size_t(b)].stiffness = 0, torn[i] = 1;
         fill(bonds_, bonds), fill(torn_, torn);
         std::vector<int> slots(sample_.size(), -1);
         fill(slot_, slots);
         std::vector<Vec3> places;
         std::vector<int> ids;
         for (int i = 0; i < count(); ++i)
-            if (sample_.atSurface[size_t(i)] || mayTear(scene, i)) places.push_back(sample_.positions[size_t(i)]), ids.push_back(i);
+            if (sample_.atSurface[size_t(i)] || mayTear(scene, i))
+                places.push_back(sample_.positions[size_t(i)]), ids.push_back(i);
         sorted_.upload(places, {}, {}, ids);
         device_.forEach(sorted_.slots(), FetchPlaces{particles(), sorted_.view()});
     }
@@ -86,15 +91,21 @@ public:
     void flip() { sorted_.flip(); }
     void forgetLists(const Particles& fluid) {
         objectsNearFluid_.forget(fluid);
-        for (NeighbourLists* lists : {&fluidNearObjects_, &objectsNearObjects_}) lists->forget(sorted_.view());
+        for (NeighbourLists* lists : {&fluidNearObjects_, &objectsNearObjects_})
+            lists->forget(sorted_.view());
     }
-    void findNeighbours(const Grid& grid, float skin, const Boxes& fluidBoxes, const int* fluidCells) {
+    void findNeighbours(const Grid& grid, float skin, const Boxes& fluidBoxes,
+                        const int* fluidCells) {
         const float reach = reach_ + skin;
-        objectsNearFluid_.build(device_, grid, reach, fluidBoxes, nullptr, boxes_, sorted_.cellStart());
+        objectsNearFluid_.build(device_, grid, reach, fluidBoxes, nullptr, boxes_,
+                                sorted_.cellStart());
         fluidNearObjects_.build(device_, grid, reach, boxes_, nullptr, fluidBoxes, fluidCells);
-        objectsNearObjects_.build(device_, grid, reach, boxes_, nullptr, boxes_, sorted_.cellStart());
+        objectsNearObjects_.build(device_, grid, reach, boxes_, nullptr, boxes_,
+                                  sorted_.cellStart());
     }
-    int64_t listBytes() const { return objectsNearFluid_.bytes() + fluidNearObjects_.bytes() + objectsNearObjects_.bytes(); }
+    int64_t listBytes() const {
+        return objectsNearFluid_.bytes() + fluidNearObjects_.bytes() + objectsNearObjects_.bytes();
+    }
 
     // Forces on fluid and objects where they are. `bodies`: solids, where any float.
     void touch(const View& v, const RigidBody* bodies, Springs springs) {
@@ -102,14 +113,29 @@ public:
         device_.forEach(v.fluid.slots, PushFluid{c});
         device_.forEach(sorted_.slots(), PushObjects{c});
         if (driver_) return;
-        device_.forEach(count(), StretchBonds{v, particles(), {force_.data()}, materials_.data(), cuts_.data(), int(cuts_.size()),
-                                               bodies, springs, presses()});
+        device_.forEach(count(), StretchBonds{v,
+                                              particles(),
+                                              {force_.data()},
+                                              materials_.data(),
+                                              cuts_.data(),
+                                              int(cuts_.size()),
+                                              bodies,
+                                              springs,
+                                              presses()});
     }
     // What objects do to a solid that floats; not where a driver moves them.
     SumPresses pressesOn(const View& v, int solid) { return {v, particles(), presses(), solid}; }
     void move(const View& v, const RigidBody* bodies) {
-        if (driver_) device_.forEach(count(), FollowDriver{v.state, particles(), {force_.data()}, {target_.data()}, {impulse_.data()}, arrival_});
-        else device_.forEach(count(), MoveObjects{v, particles(), grips_.data(), keys_.data(), bodies});
+        if (driver_)
+            device_.forEach(count(), FollowDriver{v.state,
+                                                  particles(),
+                                                  {force_.data()},
+                                                  {target_.data()},
+                                                  {impulse_.data()},
+                                                  arrival_});
+        else
+            device_.forEach(count(),
+                            MoveObjects{v, particles(), grips_.data(), keys_.data(), bodies});
         placeSurface();
     }
     // From `time` on; null: bonds and grips again.
@@ -126,7 +152,8 @@ public:
     bool exchange(double time) {
         if (time < arrival_) return false;
         const double passed = time - exchanged_;
-        std::vector<Vec3d> forces = passed > 0 ? doubles(impulse_) : std::vector<Vec3d>(sample_.size());
+        std::vector<Vec3d> forces =
+            passed > 0 ? doubles(impulse_) : std::vector<Vec3d>(sample_.size());
         for (Vec3d& f : forces) f = (passed > 0 ? 1 / passed : 0) * f;
         const std::vector<Vec3d> before = doubles(position_);
         std::vector<Vec3d> positions = before, velocities = doubles(velocity_);
@@ -135,13 +162,18 @@ public:
         CHECK(positions.size() == sample_.size() && velocities.size() == sample_.size());
         for (Vec3d& x : positions) x = x - origin_;
         drivenSpeed_ = 0;
-        for (size_t i = 0; i < before.size(); ++i) drivenSpeed_ = std::max(drivenSpeed_, length(positions[i] - before[i]) / driver_->interval());
-        fillVectors(target_, positions), fillVectors(velocity_, velocities), fillVectors(impulse_, std::vector<Vec3d>(sample_.size()));
+        for (size_t i = 0; i < before.size(); ++i)
+            drivenSpeed_ =
+                std::max(drivenSpeed_, length(positions[i] - before[i]) / driver_->interval());
+        fillVectors(target_, positions), fillVectors(velocity_, velocities),
+            fillVectors(impulse_, std::vector<Vec3d>(sample_.size()));
         exchanged_ = time, arrival_ = time + driver_->interval();
         return true;
     }
     void findSpeed(const StepState* state, Extremes* fluid) {
-        device_.reduce(count(), FindObjectSpeed{particles(), state, real(driver_ ? drivenSpeed_ : 0)}, speed_.data());
+        device_.reduce(count(),
+                       FindObjectSpeed{particles(), state, real(driver_ ? drivenSpeed_ : 0)},
+                       speed_.data());
         device_.forEach(1, TakeFaster{fluid, speed_.data()});
     }
     void writeVertices(Vertex* out, float fluidSpacing) {
@@ -153,12 +185,19 @@ public:
         if (count() == 0) return;
         const Contact& knobs = scene.contact;
         const double m = particleMass(scene), h = supportRadius(scene) / 2, rate = 0.4 * sound / h;
-        const double k = knobs.stiffness > 0 ? double(knobs.stiffness) : m * rate * rate, critical = 2 * std::sqrt(k * m);
-        law_.stiffness = real(k), law_.damping = real(knobs.damping * critical), law_.shear = real(knobs.shear * critical);
-        auto closer = [&](int n) { return std::exp(knobs.steepness * (1 - double(n) / ContactLaw::pieces)); };
+        const double k = knobs.stiffness > 0 ? double(knobs.stiffness) : m * rate * rate,
+                     critical = 2 * std::sqrt(k * m);
+        law_.stiffness = real(k), law_.damping = real(knobs.damping * critical),
+        law_.shear = real(knobs.shear * critical);
+        auto closer = [&](int n) {
+            return std::exp(knobs.steepness * (1 - double(n) / ContactLaw::pieces));
+        };
         law_.first = real(closer(0));
-        for (int n = 0; n < ContactLaw::pieces; ++n) law_.bends[n] = real(closer(n + 1) - closer(n) - (n > 0 ? closer(n) - closer(n - 1) : 0));
-        law_.influence = knobs.influence, law_.fluidRadius = scene.simulation.spacing / 2, law_.perMass = real(1 / m);
+        for (int n = 0; n < ContactLaw::pieces; ++n)
+            law_.bends[n] =
+                real(closer(n + 1) - closer(n) - (n > 0 ? closer(n) - closer(n - 1) : 0));
+        law_.influence = knobs.influence, law_.fluidRadius = scene.simulation.spacing / 2,
+        law_.perMass = real(1 / m);
         float largest = 0;
         for (const float r : sample_.radii) largest = std::max(largest, r);
         reach_ = std::max(knobs.influence * (scene.simulation.spacing / 2 + largest), 2 * largest);
@@ -169,25 +208,41 @@ public:
 
 private:
     ObjectParticles particles() const {
-        return {count(), {position_.data()}, {velocity_.data()}, {acceleration_.data()}, {home_.data()}, {mass_.data()}, {radius_.data()}, {torn_.data()},
-                object_.data(), grip_.data(), firstBond_.data(), atSurface_.data(), bonds_.data(), slot_.data()};
+        return {count(),        {position_.data()}, {velocity_.data()}, {acceleration_.data()},
+                {home_.data()}, {mass_.data()},     {radius_.data()},   {torn_.data()},
+                object_.data(), grip_.data(),       firstBond_.data(),  atSurface_.data(),
+                bonds_.data(),  slot_.data()};
     }
     ObjectSurface surface() const {
         const Particles sorted = sorted_.view();
-        return {sorted.slots, sorted.id, sorted.position, {surfaceVelocity_.data()}, {surfaceHome_.data()}, {surfaceRadius_.data()},
-                {surfaceObject_.data()}, {surfaceTorn_.data()}, {force_.data()}};
+        return {sorted.slots,
+                sorted.id,
+                sorted.position,
+                {surfaceVelocity_.data()},
+                {surfaceHome_.data()},
+                {surfaceRadius_.data()},
+                {surfaceObject_.data()},
+                {surfaceTorn_.data()},
+                {force_.data()}};
     }
     ContactView contactView(const View& v) {
         const VectorField places = sorted_.view().position;
-        ContactView c{v, surface(), {objectsNearFluid_.data(), sorted_.cellStart(), places}, {fluidNearObjects_.data(), v.fluidNearFluid.cellStart, v.fluid.position},
-                      {objectsNearObjects_.data(), sorted_.cellStart(), places}, law_};
-        c.v.c.support = real(reach_), c.v.c.support2 = real(reach_ * reach_), c.v.c.inverseSupport2 = real(1 / (reach_ * reach_));
+        ContactView c{v,
+                      surface(),
+                      {objectsNearFluid_.data(), sorted_.cellStart(), places},
+                      {fluidNearObjects_.data(), v.fluidNearFluid.cellStart, v.fluid.position},
+                      {objectsNearObjects_.data(), sorted_.cellStart(), places},
+                      law_};
+        c.v.c.support = real(reach_), c.v.c.support2 = real(reach_ * reach_),
+        c.v.c.inverseSupport2 = real(1 / (reach_ * reach_));
         return c;
     }
     void resizeSurface() {
         const int slots = sorted_.slots();
-        for (auto* field : {&surfaceVelocity_, &surfaceHome_, &force_}) field->resize(vectorSize(slots));
-        for (auto* field : {&surfaceRadius_, &surfaceObject_, &surfaceTorn_}) field->resize(size_t(slots));
+        for (auto* field : {&surfaceVelocity_, &surfaceHome_, &force_})
+            field->resize(vectorSize(slots));
+        for (auto* field : {&surfaceRadius_, &surfaceObject_, &surfaceTorn_})
+            field->resize(size_t(slots));
     }
     // Both ends of each bond, beside those of the same particle.
     void bondEnds() {
@@ -203,11 +258,13 @@ private:
         firstBondOnHost_ = first;
         fill(firstBond_, first);
     }
-    // A particle on its springs swings at no more than sqrt(2 sum k / m) and is slowed at no more than 2 sum c / m.
+    // A particle on its springs swings at no more than sqrt(2 sum k / m) and is slowed at no more
+    // than 2 sum c / m.
     double stableStep(const Scene& scene, double contact) const {
         double fastest = 0;
         for (size_t i = 0; i < sample_.size(); ++i) {
-            const double m = sample_.masses[i], share = scene.objects[size_t(sample_.objects[i])].damping;
+            const double m = sample_.masses[i],
+                         share = scene.objects[size_t(sample_.objects[i])].damping;
             double k = 6 * contact, c = 6 * double(law_.damping + law_.shear);
             for (int b = firstBondOnHost_[i]; b < firstBondOnHost_[i + 1]; ++b) {
                 const double spring = whole_[size_t(b)].stiffness;
@@ -215,14 +272,16 @@ private:
             }
             fastest = std::max(fastest, std::sqrt(k / m) + c / m);
         }
-        return 1.5 / fastest;   // it is stable to 2
+        return 1.5 / fastest;  // it is stable to 2
     }
     bool mayTear(const Scene& scene, int i) const {
-        return !scene.cuts.empty() || scene.objects[size_t(sample_.objects[size_t(i)])].breakingStrain > 0;
+        return !scene.cuts.empty() ||
+               scene.objects[size_t(sample_.objects[size_t(i)])].breakingStrain > 0;
     }
     Presses presses() { return {{press_.data()}, {pressedBy_.data()}}; }
     int padded() const { return (count() + clusterSize - 1) / clusterSize * clusterSize; }
-    template <class V> void fillVectors(Buffer<real, Device>& buffer, const std::vector<V>& values) {
+    template <class V>
+    void fillVectors(Buffer<real, Device>& buffer, const std::vector<V>& values) {
         std::vector<real> x(vectorSize(padded()));
         for (size_t i = 0; i < values.size(); ++i)
             for (int k = 0; k < 3; ++k) x[vectorOffset(int(i), k)] = real(values[i][k]);
@@ -248,17 +307,19 @@ private:
 
     Device& device_;
     ObjectSample sample_;
-    std::vector<BondEnd> whole_;          // as at the start
+    std::vector<BondEnd> whole_;  // as at the start
     std::vector<int> firstBondOnHost_;
     ContactLaw law_{};
-    float reach_ = 0;                     // m, of the longest contact
+    float reach_ = 0;  // m, of the longest contact
     double longestStep_ = 1e9;
     ObjectDriver* driver_ = nullptr;
-    double exchanged_ = 0, arrival_ = 0;  // s: when it was asked last, and when particles are to be where it said
-    double drivenSpeed_ = 0;              // m/s, the most on the way there
-    Vec3d origin_;                        // m, the domain's lower corner
+    double exchanged_ = 0,
+           arrival_ = 0;  // s: when it was asked last, and when particles are to be where it said
+    double drivenSpeed_ = 0;  // m/s, the most on the way there
+    Vec3d origin_;            // m, the domain's lower corner
     Buffer<real, Device> target_{device_}, impulse_{device_}, press_{device_}, pressedBy_{device_};
-    Buffer<real, Device> position_{device_}, velocity_{device_}, acceleration_{device_}, home_{device_}, mass_{device_}, radius_{device_}, torn_{device_};
+    Buffer<real, Device> position_{device_}, velocity_{device_}, acceleration_{device_},
+        home_{device_}, mass_{device_}, radius_{device_}, torn_{device_};
     Buffer<int, Device> object_{device_}, grip_{device_}, firstBond_{device_}, slot_{device_};
     Buffer<uint8_t, Device> atSurface_{device_};
     Buffer<BondEnd, Device> bonds_{device_};
@@ -268,7 +329,8 @@ private:
     Buffer<MotionKey, Device> keys_{device_};
     Buffer<Extremes, Device> speed_{device_};
     ParticleSet<Device> sorted_{device_, Kind::Objects};
-    Buffer<real, Device> surfaceVelocity_{device_}, surfaceHome_{device_}, surfaceRadius_{device_}, surfaceObject_{device_}, surfaceTorn_{device_}, force_{device_};
+    Buffer<real, Device> surfaceVelocity_{device_}, surfaceHome_{device_}, surfaceRadius_{device_},
+        surfaceObject_{device_}, surfaceTorn_{device_}, force_{device_};
     Boxes boxes_;
     NeighbourLists objectsNearFluid_, fluidNearObjects_, objectsNearObjects_;
 };

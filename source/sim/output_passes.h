@@ -13,14 +13,30 @@ HD inline real pressureOf(const Particles& p, int i) {
 }
 
 // A colour mode: the scalar that a vertex carries.
-struct PlainValue { HD static real of(const Particles&, int) { return 0; } };
-struct SpeedValue { HD static real of(const Particles& p, int i) { return magnitude(load(p.velocity, i)); } };
-struct AccelerationValue { HD static real of(const Particles& p, int i) { return magnitude(load(p.acceleration, i)); } };
-struct DensityValue { HD static real of(const Particles& p, int i) { return densityOf(p, i); } };
-struct PressureValue { HD static real of(const Particles& p, int i) { return pressureOf(p, i); } };
-struct FluidValue { HD static real of(const Particles& p, int i) { return massRatio(p, i); } };
-struct SurfaceValue { HD static real of(const Particles& p, int i) { return load(p.normalLength, i); } };   // after LeaveOutSpray
-struct IdValue { HD static real of(const Particles& p, int i) { return real(p.id[i]); } };
+struct PlainValue {
+    HD static real of(const Particles&, int) { return 0; }
+};
+struct SpeedValue {
+    HD static real of(const Particles& p, int i) { return magnitude(load(p.velocity, i)); }
+};
+struct AccelerationValue {
+    HD static real of(const Particles& p, int i) { return magnitude(load(p.acceleration, i)); }
+};
+struct DensityValue {
+    HD static real of(const Particles& p, int i) { return densityOf(p, i); }
+};
+struct PressureValue {
+    HD static real of(const Particles& p, int i) { return pressureOf(p, i); }
+};
+struct FluidValue {
+    HD static real of(const Particles& p, int i) { return massRatio(p, i); }
+};
+struct SurfaceValue {
+    HD static real of(const Particles& p, int i) { return load(p.normalLength, i); }
+};  // after LeaveOutSpray
+struct IdValue {
+    HD static real of(const Particles& p, int i) { return real(p.id[i]); }
+};
 
 struct ValueRange {
     float low = 3.4e38f, high = -3.4e38f;
@@ -43,7 +59,8 @@ template <class Value> struct WriteVertices {
     }
 };
 
-// The same for the boundary particles with the first ids; 1 for those of solids, ids below solidsEnd, 0 for the domain's walls.
+// The same for the boundary particles with the first ids; 1 for those of solids, ids below
+// solidsEnd, 0 for the domain's walls.
 struct WriteWallVertices {
     using Index = int;
     Particles p;
@@ -64,18 +81,21 @@ template <class Value> struct CountValues {
     HD_OUT int bin(int i) const {
         if (p.id[i] < 0) return -1;
         const float share = (float(Value::of(p, i)) - range.low) / (range.high - range.low);
-        return share >= 0 ? int((share < 1 ? share : 1) * (bins - 1)) : -1;   // division may round up a bit
+        return share >= 0 ? int((share < 1 ? share : 1) * (bins - 1))
+                          : -1;  // division may round up a bit
     }
 };
 
 // Sums over the fluid, in double precision.
 struct Totals {
-    double mass = 0, speed2 = 0, density = 0, compression = 0, position2 = 0;   // in masses of the scene's fluid: all but densities
+    double mass = 0, speed2 = 0, density = 0, compression = 0,
+           position2 = 0;  // in masses of the scene's fluid: all but densities
     double velocity[3] = {0, 0, 0}, position[3] = {0, 0, 0};
-    double maxSpeed2 = 0, maxRatio = 0;   // density / that at rest
+    double maxSpeed2 = 0, maxRatio = 0;  // density / that at rest
     int64_t notFinite = 0;
     HD_OUT void add(const Totals& o) {
-        mass += o.mass, speed2 += o.speed2, density += o.density, compression += o.compression, position2 += o.position2;
+        mass += o.mass, speed2 += o.speed2, density += o.density, compression += o.compression,
+            position2 += o.position2;
         for (int k = 0; k < 3; ++k) velocity[k] += o.velocity[k], position[k] += o.position[k];
         maxSpeed2 = o.maxSpeed2 > maxSpeed2 ? o.maxSpeed2 : maxSpeed2;
         maxRatio = o.maxRatio > maxRatio ? o.maxRatio : maxRatio;
@@ -88,7 +108,8 @@ struct SumUp {
     HD void addTo(Totals& t, int i) const {
         if (p.id[i] < 0) return;
         const Vector<real> x = load(p.position, i), u = load(p.velocity, i);
-        const double mass = massRatio(p, i), ratio = load(p.density, i) / restDensity, excess = ratio - 1, rho = densityOf(p, i);
+        const double mass = massRatio(p, i), ratio = load(p.density, i) / restDensity,
+                     excess = ratio - 1, rho = densityOf(p, i);
         const double ux = u.x, uy = u.y, uz = u.z, speed2 = ux * ux + uy * uy + uz * uz;
         Totals one;
         one.mass = mass, one.speed2 = mass * speed2, one.maxSpeed2 = speed2;

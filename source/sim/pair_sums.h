@@ -1,7 +1,8 @@
-// Sums over pairs that a list holds once: what a pair gives to one particle it gives, or its opposite, to the other (Newton's third law).
-// Blocks of clusters are summed by one thread each, into memory of their own that reaches from the block's first cluster to the last one
-// that its lists know; then each particle adds up what the blocks have for it, in their order. Blocks follow from the number of particles:
-// the sums don't depend on the number of threads.
+// Sums over pairs that a list holds once: what a pair gives to one particle it gives, or its
+// opposite, to the other (Newton's third law). Blocks of clusters are summed by one thread each,
+// into memory of their own that reaches from the block's first cluster to the last one that its
+// lists know; then each particle adds up what the blocks have for it, in their order. Blocks follow
+// from the number of particles: the sums don't depend on the number of threads.
 #pragma once
 
 #include "sim/cluster_lists.h"
@@ -25,12 +26,14 @@ public:
         return int64_t(numbers * sizeof(float));
     }
 
-    // Adds up pass.of(pair, pass.state(i), pass.state(j)), what a pair gives to i, and Pass::opposite says whether j gets that or its opposite;
-    // pass.finish(i) goes on from the sum, which is then in pass.field().
+    // Adds up pass.of(pair, pass.state(i), pass.state(j)), what a pair gives to i, and
+    // Pass::opposite says whether j gets that or its opposite; pass.finish(i) goes on from the sum,
+    // which is then in pass.field().
     template <class Pass> void run(Omp& device, const ClusterLists& lists, const Pass& pass) {
         const int clusters = pass.v.fluid.slots / clusterSize;
-        constexpr int numbers = clusterSize * stride<decltype(pass.field())>;   // a cluster
-        const int block = std::max(256, (clusters + mostBlocks - 1) / mostBlocks), count = (clusters + block - 1) / block;
+        constexpr int numbers = clusterSize * stride<decltype(pass.field())>;  // a cluster
+        const int block = std::max(256, (clusters + mostBlocks - 1) / mostBlocks),
+                  count = (clusters + block - 1) / block;
         blocks_.resize(size_t(count));
         device.forTasks(count, [&](int b) {
             const int begin = b * block, end = std::min(clusters, begin + block);
@@ -39,15 +42,21 @@ public:
             bool any = false;
             for (int c = begin; c < end && !any; ++c) any = isNear(pass.v.fluid, c);
             if (!any) return;
-            sums.assign(size_t(lists.endOf(begin, end) - begin) * numbers + clusterSize, 0);   // readable one cluster past its end
-            const Pass local = pass;   // else each store to the sums might have changed a constant, for all the compiler knows
+            sums.assign(size_t(lists.endOf(begin, end) - begin) * numbers + clusterSize,
+                        0);           // readable one cluster past its end
+            const Pass local = pass;  // else each store to the sums might have changed a constant,
+                                      // for all the compiler knows
             for (int i = begin * clusterSize; i < end * clusterSize; i += Group::size)
-                if (isNear(local.v.fluid, i / clusterSize)) sumOnce(local, Group{i}, sums.data(), begin);
+                if (isNear(local.v.fluid, i / clusterSize))
+                    sumOnce(local, Group{i}, sums.data(), begin);
         });
         device.forTasks(count, [&](int b) {
             const int begin = b * block, end = std::min(clusters, begin + block);
-            auto isDueOne = [&](int c) { return isDue<Pass::dueFrom>(pass.v.fluid, c * clusterSize); };
-            for (int first = begin, last; first < end; first = last) {   // stretches of clusters that are due, or aren't
+            auto isDueOne = [&](int c) {
+                return isDue<Pass::dueFrom>(pass.v.fluid, c * clusterSize);
+            };
+            for (int first = begin, last; first < end;
+                 first = last) {  // stretches of clusters that are due, or aren't
                 last = first + 1;
                 while (last < end && isDueOne(last) == isDueOne(first)) ++last;
                 if (isDueOne(first)) addUp<numbers>(b, block, first, last, pass.field().data);
@@ -61,7 +70,9 @@ private:
     static constexpr int mostBlocks = 32;
 
     // Clusters that are due or may have a neighbour that is.
-    static bool isNear(const Particles& p, int cluster) { return !p.due || p.due[cluster] > NotDue; }
+    static bool isNear(const Particles& p, int cluster) {
+        return !p.due || p.due[cluster] > NotDue;
+    }
 
     // What blocks [0, b] have for clusters [first, last) of block b.
     template <int numbers> void addUp(int b, int block, int first, int last, float* field) const {
@@ -72,26 +83,34 @@ private:
             const std::vector<float>& sums = blocks_[size_t(a)];
             const size_t skipped = size_t(first - a * block) * numbers;
             if (sums.size() <= skipped + clusterSize) continue;
-            for (size_t k = 0, n = std::min(sums.size() - clusterSize - skipped, count); k < n; ++k) out[k] += sums[skipped + k];
+            for (size_t k = 0, n = std::min(sums.size() - clusterSize - skipped, count); k < n; ++k)
+                out[k] += sums[skipped + k];
         }
     }
 
-    template <class Pass> HD static void sumOnce(const Pass& pass, Group i, float* sums, int firstCluster) {
+    template <class Pass>
+    HD static void sumOnce(const Pass& pass, Group i, float* sums, int firstCluster) {
         const View& v = pass.v;
         using Field = decltype(pass.field());
         constexpr int n = components<Field>, numbers = clusterSize * stride<Field>;
         const Vector<Wide> x = load(v.fluid.position, i);
         const auto own = pass.state(i);
         const Four same{i.first / clusterSize * clusterSize};
-        auto sum = pass.of(makePair(v.c, x, load(v.fluid.position, same)), own, pass.state(same));   // each gives itself to all four
-        forNeighbours<Pass::lists, Pass::dueFrom>(v, v.fluidNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
-            const auto given = pass.of(p, own, pass.state(j));
-            sum = sum + given;
-            float* other = sums + size_t(j.first / clusterSize - firstCluster) * numbers;
-            for (int k = 0; k < n; ++k) addToOthers<Pass::opposite>(other + k * clusterSize, component(given, k));
-        }, isDue<Pass::dueFrom>(v.fluid, i) ? nullptr : v.fluid.due);
+        auto sum = pass.of(makePair(v.c, x, load(v.fluid.position, same)), own,
+                           pass.state(same));  // each gives itself to all four
+        forNeighbours<Pass::lists, Pass::dueFrom>(
+            v, v.fluidNearFluid, i, x,
+            [&](const auto& p, Four j) LANE_CALL {
+                const auto given = pass.of(p, own, pass.state(j));
+                sum = sum + given;
+                float* other = sums + size_t(j.first / clusterSize - firstCluster) * numbers;
+                for (int k = 0; k < n; ++k)
+                    addToOthers<Pass::opposite>(other + k * clusterSize, component(given, k));
+            },
+            isDue<Pass::dueFrom>(v.fluid, i) ? nullptr : v.fluid.due);
         const auto whole = total(sum);
-        float* at = sums + size_t(i.first / clusterSize - firstCluster) * numbers + i.first % clusterSize;
+        float* at =
+            sums + size_t(i.first / clusterSize - firstCluster) * numbers + i.first % clusterSize;
         for (int k = 0; k < n; ++k, at += clusterSize)
             storeAt(at, Group{0}, loadAt(at, Group{0}) + component(whole, k));
     }

@@ -12,7 +12,7 @@
 
 namespace spindrift::LANES {
 
-enum class Kind { Fluid, Walls, Objects };   // of objects just places: the rest is elsewhere
+enum class Kind { Fluid, Walls, Objects };  // of objects just places: the rest is elsewhere
 
 template <class Device> class ParticleSet {
 public:
@@ -22,25 +22,46 @@ public:
     const int* cellStart() const { return cellStart_.data(); }
 
     Particles view() const {
-        return {slots_, id_.data(), {position_.data()}, {velocity_.data()}, {acceleration_.data()}, {addedForce_.data()}, {normal_.data()}, {normalLength_.data()},
-                {density_.data()}, {inverseDensity_.data()}, {pressureTerm_.data()}, {mass_.data()}, {outward_.data()}, {ownVelocity_.data()},
-                {densityRate_.data()}, {shiftVelocity_.data()}, {shiftAcceleration_.data()},
-                {kept_.position.data()}, {kept_.velocity.data()}, {kept_.density.data()}, {massRatio_.data()}, {viscosity_.data()}, {level_.data()}, due_.data()};
+        return {slots_,
+                id_.data(),
+                {position_.data()},
+                {velocity_.data()},
+                {acceleration_.data()},
+                {addedForce_.data()},
+                {normal_.data()},
+                {normalLength_.data()},
+                {density_.data()},
+                {inverseDensity_.data()},
+                {pressureTerm_.data()},
+                {mass_.data()},
+                {outward_.data()},
+                {ownVelocity_.data()},
+                {densityRate_.data()},
+                {shiftVelocity_.data()},
+                {shiftAcceleration_.data()},
+                {kept_.position.data()},
+                {kept_.velocity.data()},
+                {kept_.density.data()},
+                {massRatio_.data()},
+                {viscosity_.data()},
+                {level_.data()},
+                due_.data()};
     }
 
-    // Takes over particles with ids firstId, firstId + 1, ...; boundary particles have no velocities. Densities only where they
-    // are carried.
-    void upload(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities, const std::vector<float>& densities,
-                int firstId) {
+    // Takes over particles with ids firstId, firstId + 1, ...; boundary particles have no
+    // velocities. Densities only where they are carried.
+    void upload(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities,
+                const std::vector<float>& densities, int firstId) {
         std::vector<int> ids(positions.size());
         std::iota(ids.begin(), ids.end(), firstId);
         upload(positions, velocities, densities, ids);
     }
-    void upload(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities, const std::vector<float>& densities,
-                const std::vector<int>& ids) {
+    void upload(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities,
+                const std::vector<float>& densities, const std::vector<int>& ids) {
         const int n = int(positions.size());
         resize((n + clusterSize - 1) / clusterSize * clusterSize);
-        std::vector<real> x(vectorSize(slots_)), u(vectorSize(slots_)), rho(densities.begin(), densities.end());
+        std::vector<real> x(vectorSize(slots_)), u(vectorSize(slots_)),
+            rho(densities.begin(), densities.end());
         std::vector<int> id(slots_, -1);
         for (int i = 0; i < n; ++i) {
             id[i] = ids[i];
@@ -59,7 +80,7 @@ public:
     void fillMixture(const std::vector<float>& massRatios, const std::vector<float>& viscosities) {
         mixture_ = true;
         resize(slots_);
-        if (sortedId_.size() > 0) resizeSorted(slots_);   // a recorded sort can't make room
+        if (sortedId_.size() > 0) resizeSorted(slots_);  // a recorded sort can't make room
         const std::vector<int> id = copy(id_);
         std::vector<real> ratio(slots_, 1), mu(slots_, 0);
         for (int i = 0; i < slots_; ++i)
@@ -94,14 +115,16 @@ public:
         flip();
         resize(slots);
     }
-    // The sorted copies become the particles: what a recorded sort can't do when it is run again, because it is the
-    // host's work. `side` says which buffers are the particles now.
+    // The sorted copies become the particles: what a recorded sort can't do when it is run again,
+    // because it is the host's work. `side` says which buffers are the particles now.
     void flip() {
         id_.swap(sortedId_);
         position_.swap(sortedPosition_);
         if (kind_ == Kind::Fluid) velocity_.swap(sortedVelocity_);
         if (sortsDensity()) density_.swap(sortedDensity_);
-        if (hasLevels()) level_.swap(sortedLevel_), acceleration_.swap(sortedAcceleration_), densityRate_.swap(sortedDensityRate_);
+        if (hasLevels())
+            level_.swap(sortedLevel_), acceleration_.swap(sortedAcceleration_),
+                densityRate_.swap(sortedDensityRate_);
         massRatio_.swap(sortedMassRatio_), viscosity_.swap(sortedViscosity_);
         kept_.position.swap(sortedKept_.position);
         kept_.velocity.swap(sortedKept_.velocity);
@@ -109,8 +132,8 @@ public:
         side_ = 1 - side_;
     }
     int side() const { return side_; }
-    // Boundary particles have a velocity only where fluid sticks to them, a density only where its gradient is wanted.
-    // The first call says true: what they carry is to be filled in.
+    // Boundary particles have a velocity only where fluid sticks to them, a density only where its
+    // gradient is wanted. The first call says true: what they carry is to be filled in.
     bool carryVelocity() {
         const bool isNew = !std::exchange(carriesVelocity_, true);
         resize(slots_);
@@ -118,7 +141,8 @@ public:
     }
     void move() { moves_ = true, resize(slots_); }
     void haveDensity() { hasDensity_ = true, resize(slots_); }
-    // Fluid's density comes from a sum, or goes from step to step with a rate; with shifting its particles leave the fluid's paths.
+    // Fluid's density comes from a sum, or goes from step to step with a rate; with shifting its
+    // particles leave the fluid's paths.
     void carryDensity() { carriesDensity_ = true; }
     void shift() { shifts_ = true; }
     // What integrators need besides: a velocity, or all of a state.
@@ -138,10 +162,11 @@ public:
         stepsLocally_ = locally;
         resize(slots_);
         if (locally) {
-            if (sortedId_.size() > 0) resizeSorted(slots_);   // a recorded sort can't make room
+            if (sortedId_.size() > 0) resizeSorted(slots_);  // a recorded sort can't make room
             return;
         }
-        for (auto* b : {&level_, &sortedLevel_, &sortedAcceleration_, &sortedDensityRate_}) b->release();
+        for (auto* b : {&level_, &sortedLevel_, &sortedAcceleration_, &sortedDensityRate_})
+            b->release();
         due_.release();
     }
     // Particles that never move are sorted once.
@@ -150,10 +175,14 @@ public:
         sortedPosition_.release(), sortedVelocity_.release();
     }
 
-    // Relative to the domain's lower corner, in the order of ids from firstId on: bit by bit what upload() took, or what
-    // became of it.
-    std::vector<Vec3> positions(int count, int firstId) const { return inOrder(position_, count, firstId); }
-    std::vector<Vec3> velocities(int count, int firstId) const { return inOrder(velocity_, count, firstId); }
+    // Relative to the domain's lower corner, in the order of ids from firstId on: bit by bit what
+    // upload() took, or what became of it.
+    std::vector<Vec3> positions(int count, int firstId) const {
+        return inOrder(position_, count, firstId);
+    }
+    std::vector<Vec3> velocities(int count, int firstId) const {
+        return inOrder(velocity_, count, firstId);
+    }
     // Empty where density is not carried.
     std::vector<float> densities(int count) const {
         if (!carriesDensity_) return {};
@@ -169,7 +198,8 @@ public:
     std::vector<Particle> download(int count, Vec3 origin) const {
         std::vector<int> id = copy(id_);
         std::vector<real> x = copy(position_), u = copy(velocity_), a = copy(acceleration_);
-        std::vector<real> rho = copy(density_), term = copy(pressureTerm_), ratio = copy(massRatio_);
+        std::vector<real> rho = copy(density_), term = copy(pressureTerm_),
+                          ratio = copy(massRatio_);
         const Particles host = onHost(slots_, id, x, u, a, rho, term, ratio);
         std::vector<Particle> out(count);
         for (int i = 0; i < slots_; ++i)
@@ -182,9 +212,14 @@ public:
         const int slot = int(std::find(ids.begin(), ids.end(), id) - ids.begin());
         CHECK(slot < slots_);
         const int first = slot / clusterSize * clusterSize;
-        auto vectors = [&](const Buffer<real, Device>& b) { return copy(b, vectorOffset(first, 0), vectorSize(clusterSize)); };
-        auto numbers = [&](const Buffer<real, Device>& b) { return copy(b, size_t(first), size_t(clusterSize)); };
-        std::vector<real> x = vectors(position_), u = vectors(velocity_), a = vectors(acceleration_);
+        auto vectors = [&](const Buffer<real, Device>& b) {
+            return copy(b, vectorOffset(first, 0), vectorSize(clusterSize));
+        };
+        auto numbers = [&](const Buffer<real, Device>& b) {
+            return copy(b, size_t(first), size_t(clusterSize));
+        };
+        std::vector<real> x = vectors(position_), u = vectors(velocity_),
+                          a = vectors(acceleration_);
         std::vector<real> rho = numbers(density_), term = numbers(pressureTerm_), ratio;
         if (mixture_) ratio = numbers(massRatio_);
         std::vector<int> own(ids.begin() + first, ids.begin() + first + clusterSize);
@@ -215,7 +250,8 @@ private:
         if (carriesDensity_) densityRate_.resize(slots);
         if (mixture_) massRatio_.resize(slots), viscosity_.resize(slots);
         if (shifts_)
-            for (auto* field : {&shiftVelocity_, &shiftAcceleration_}) field->resize(vectorSize(slots));
+            for (auto* field : {&shiftVelocity_, &shiftAcceleration_})
+                field->resize(vectorSize(slots));
         if (stepsLocally_) level_.resize(slots);
         resizeKept(kept_, slots);
     }
@@ -240,18 +276,24 @@ private:
         if (keepsState_ || keepsPlace_) kept.position.resize(vectorSize(slots));
         if (keepsState_ && carriesDensity_) kept.density.resize(slots);
     }
-    static Particles onHost(int slots, std::vector<int>& id, std::vector<real>& x, std::vector<real>& u, std::vector<real>& a,
-                            std::vector<real>& rho, std::vector<real>& term, std::vector<real>& ratio) {
+    static Particles onHost(int slots, std::vector<int>& id, std::vector<real>& x,
+                            std::vector<real>& u, std::vector<real>& a, std::vector<real>& rho,
+                            std::vector<real>& term, std::vector<real>& ratio) {
         Particles p{};
         p.slots = slots, p.id = id.data();
         p.position = {x.data()}, p.velocity = {u.data()}, p.acceleration = {a.data()};
-        p.density = {rho.data()}, p.pressureTerm = {term.data()}, p.massRatio = {ratio.empty() ? nullptr : ratio.data()};
+        p.density = {rho.data()}, p.pressureTerm = {term.data()},
+        p.massRatio = {ratio.empty() ? nullptr : ratio.data()};
         return p;
     }
     static Particle describe(const Particles& host, int i, Vec3 origin) {
         auto toVec3d = [](Vector<real> v) { return Vec3d{double(v.x), double(v.y), double(v.z)}; };
-        return {host.id[i], toVec3d(load(host.position, i)) + toDouble(origin), toVec3d(load(host.velocity, i)),
-                toVec3d(load(host.acceleration, i)), double(densityOf(host, i)), double(pressureOf(host, i))};
+        return {host.id[i],
+                toVec3d(load(host.position, i)) + toDouble(origin),
+                toVec3d(load(host.velocity, i)),
+                toVec3d(load(host.acceleration, i)),
+                double(densityOf(host, i)),
+                double(pressureOf(host, i))};
     }
     std::vector<Vec3> inOrder(const Buffer<real, Device>& field, int count, int firstId) const {
         std::vector<real> values = copy(field);
@@ -264,8 +306,11 @@ private:
         }
         return out;
     }
-    template <class T> std::vector<T> copy(const Buffer<T, Device>& buffer) const { return copy(buffer, 0, buffer.size()); }
-    template <class T> std::vector<T> copy(const Buffer<T, Device>& buffer, size_t first, size_t count) const {
+    template <class T> std::vector<T> copy(const Buffer<T, Device>& buffer) const {
+        return copy(buffer, 0, buffer.size());
+    }
+    template <class T>
+    std::vector<T> copy(const Buffer<T, Device>& buffer, size_t first, size_t count) const {
         std::vector<T> host(count);
         device_.download(host.data(), buffer.data() + first, count);
         return host;
@@ -273,19 +318,27 @@ private:
 
     Device& device_;
     Kind kind_;
-    bool carriesVelocity_ = kind_ == Kind::Fluid, hasDensity_ = kind_ == Kind::Fluid, carriesDensity_ = false, shifts_ = false,
-         moves_ = false, keepsVelocity_ = false, keepsState_ = false, keepsPlace_ = false, stepsLocally_ = false, addsPairs_ = false, hasNormals_ = false, mixture_ = false;
+    bool carriesVelocity_ = kind_ == Kind::Fluid, hasDensity_ = kind_ == Kind::Fluid,
+         carriesDensity_ = false, shifts_ = false, moves_ = false, keepsVelocity_ = false,
+         keepsState_ = false, keepsPlace_ = false, stepsLocally_ = false, addsPairs_ = false,
+         hasNormals_ = false, mixture_ = false;
     int slots_ = 0, side_ = 0;
-    Buffer<int, Device> id_{device_}, sortedId_{device_}, key_{device_}, order_{device_}, cellStart_{device_};
-    Buffer<real, Device> position_{device_}, velocity_{device_}, acceleration_{device_}, addedForce_{device_}, normal_{device_}, normalLength_{device_};
-    Buffer<real, Device> sortedPosition_{device_}, sortedVelocity_{device_}, sortedDensity_{device_};
-    Buffer<real, Device> densityRate_{device_}, shiftVelocity_{device_}, shiftAcceleration_{device_};
+    Buffer<int, Device> id_{device_}, sortedId_{device_}, key_{device_}, order_{device_},
+        cellStart_{device_};
+    Buffer<real, Device> position_{device_}, velocity_{device_}, acceleration_{device_},
+        addedForce_{device_}, normal_{device_}, normalLength_{device_};
+    Buffer<real, Device> sortedPosition_{device_}, sortedVelocity_{device_},
+        sortedDensity_{device_};
+    Buffer<real, Device> densityRate_{device_}, shiftVelocity_{device_},
+        shiftAcceleration_{device_};
     Kept kept_{device_}, sortedKept_{device_};
-    Buffer<real, Device> massRatio_{device_}, viscosity_{device_}, sortedMassRatio_{device_}, sortedViscosity_{device_};
+    Buffer<real, Device> massRatio_{device_}, viscosity_{device_}, sortedMassRatio_{device_},
+        sortedViscosity_{device_};
     Buffer<uint8_t, Device> due_{device_};
-    Buffer<real, Device> level_{device_}, sortedLevel_{device_}, sortedAcceleration_{device_}, sortedDensityRate_{device_};
-    Buffer<real, Device> density_{device_}, inverseDensity_{device_}, pressureTerm_{device_}, mass_{device_}, outward_{device_},
-        ownVelocity_{device_};
+    Buffer<real, Device> level_{device_}, sortedLevel_{device_}, sortedAcceleration_{device_},
+        sortedDensityRate_{device_};
+    Buffer<real, Device> density_{device_}, inverseDensity_{device_}, pressureTerm_{device_},
+        mass_{device_}, outward_{device_}, ownVelocity_{device_};
 };
 
 }  // namespace spindrift::LANES

@@ -1,5 +1,6 @@
-// The passes of a step. A pass is a struct with a View and operator()(index); it reads neighbours and writes its
-// own particles only, never a field that it gathers. `Index` says how many particles one call works on.
+// The passes of a step. A pass is a struct with a View and operator()(index); it reads neighbours
+// and writes its own particles only, never a field that it gathers. `Index` says how many particles
+// one call works on.
 #pragma once
 
 #include "core/vertex.h"
@@ -11,8 +12,9 @@ namespace spindrift::LANES {
 // Empty slots lie beyond this coordinate, m.
 inline constexpr real farAway = 1e6;
 
-// Sort key: the particle's cell, or -1 for an empty slot. Who is nowhere (not finite) has no neighbours in any cell; such
-// particles are spread, because all of them in one cell would take forever.
+// Sort key: the particle's cell, or -1 for an empty slot. Who is nowhere (not finite) has no
+// neighbours in any cell; such particles are spread, because all of them in one cell would take
+// forever.
 struct FindCell {
     using Index = int;
     Particles p;
@@ -21,12 +23,14 @@ struct FindCell {
     HD void operator()(int i) const {
         const Vector<real> x = load(p.position, i);
         const bool somewhere = dot(x, x) - dot(x, x) == 0;
-        key[i] = p.id[i] < 0 ? -1 : somewhere ? grid.cell(x) : i % (grid.cells.x * grid.cells.y * grid.cells.z);
+        key[i] = p.id[i] < 0 ? -1
+                 : somewhere ? grid.cell(x)
+                             : i % (grid.cells.x * grid.cells.y * grid.cells.z);
     }
 };
 
-// Moves what a particle carries from step to step to its new slot: boundary particles no velocity, and density only where it
-// is not summed up anew.
+// Moves what a particle carries from step to step to its new slot: boundary particles no velocity,
+// and density only where it is not summed up anew.
 struct Reorder {
     using Index = int;
     const int* order;
@@ -38,45 +42,56 @@ struct Reorder {
         const real far = 2 * farAway * real(1 + i % 4);
         store(to.position, i, s < 0 ? Vector<real>{far, far, far} : load(from.position, s));
         if (to.level.data) store(to.level, i, s < 0 ? resting : load(from.level, s));
-        if (to.level.data) store(to.acceleration, i, s < 0 ? Vector<real>{0, 0, 0} : load(from.acceleration, s));
-        if (to.level.data && to.densityRate.data) store(to.densityRate, i, s < 0 ? real(0) : load(from.densityRate, s));
-        if (to.velocity.data) store(to.velocity, i, s < 0 ? Vector<real>{0, 0, 0} : load(from.velocity, s));
+        if (to.level.data)
+            store(to.acceleration, i, s < 0 ? Vector<real>{0, 0, 0} : load(from.acceleration, s));
+        if (to.level.data && to.densityRate.data)
+            store(to.densityRate, i, s < 0 ? real(0) : load(from.densityRate, s));
+        if (to.velocity.data)
+            store(to.velocity, i, s < 0 ? Vector<real>{0, 0, 0} : load(from.velocity, s));
         if (to.density.data) store(to.density, i, s < 0 ? real(0) : load(from.density, s));
         if (to.massRatio.data) store(to.massRatio, i, s < 0 ? real(1) : load(from.massRatio, s));
         if (to.viscosity.data) store(to.viscosity, i, s < 0 ? real(0) : load(from.viscosity, s));
-        if (to.keptPosition.data) store(to.keptPosition, i, s < 0 ? Vector<real>{far, far, far} : load(from.keptPosition, s));
-        if (to.keptVelocity.data) store(to.keptVelocity, i, s < 0 ? Vector<real>{0, 0, 0} : load(from.keptVelocity, s));
-        if (to.keptDensity.data) store(to.keptDensity, i, s < 0 ? real(0) : load(from.keptDensity, s));
+        if (to.keptPosition.data)
+            store(to.keptPosition, i,
+                  s < 0 ? Vector<real>{far, far, far} : load(from.keptPosition, s));
+        if (to.keptVelocity.data)
+            store(to.keptVelocity, i, s < 0 ? Vector<real>{0, 0, 0} : load(from.keptVelocity, s));
+        if (to.keptDensity.data)
+            store(to.keptDensity, i, s < 0 ? real(0) : load(from.keptDensity, s));
     }
 };
 
-// m_b = f rho0 / sum W over the boundary particles (Akinci 2012, their eq. 4 and 5), itself included
-// but in the classic formulation, and no less than wallMassFloor: in the edges of a box, where two
-// walls meet, the wall would become thin. One that is alone, as empty slots are, stays finite.
+// m_b = f rho0 / sum W over the boundary particles (Akinci 2012, their eq. 4 and 5), itself
+// included but in the classic formulation, and no less than wallMassFloor: in the edges of a box,
+// where two walls meet, the wall would become thin. One that is alone, as empty slots are, stays
+// finite.
 template <class Kernel> struct ComputeWallMass {
     using Index = Group;
     View v;
     HD void operator()(Group i) const {
         Real<Group> sum = 0;
-        forNeighbours<Lists::All>(v, v.wallsNearWalls, i, load(v.walls.position, i), [&](const auto& p, Four) LANE_CALL {
-            sum += Kernel::w(p.q);
-        });
+        forNeighbours<Lists::All>(v, v.wallsNearWalls, i, load(v.walls.position, i),
+                                  [&](const auto& p, Four) LANE_CALL { sum += Kernel::w(p.q); });
         const real alone = Kernel::w(real(0));
-        const Real<Group> near = max(total(sum) + Real<Group>((v.c.selfWeight - 1) * alone), Real<Group>(real(0.01) * alone));
-        const Real<Group> mass = Real<Group>(v.c.wallFactor * v.c.restDensity / v.c.kernelScale) / near;
+        const Real<Group> near = max(total(sum) + Real<Group>((v.c.selfWeight - 1) * alone),
+                                     Real<Group>(real(0.01) * alone));
+        const Real<Group> mass =
+            Real<Group>(v.c.wallFactor * v.c.restDensity / v.c.kernelScale) / near;
         store(v.walls.mass, i, max(mass, Real<Group>(v.c.wallMassFloor)));
     }
 };
 
-// Density and what follows from it: the equation of state p = max(p_least, p0 + k ((rho/rho0)^gamma - 1)). A sum over few neighbours says
-// little of the fluid's density: 1/rho, which viscous forces go with twice, is never more than 1.25/rho0. (Without that, single drops at walls were
-// seen to blow up in thick fluid.)
+// Density and what follows from it: the equation of state p = max(p_least, p0 + k ((rho/rho0)^gamma
+// - 1)). A sum over few neighbours says little of the fluid's density: 1/rho, which viscous forces
+// go with twice, is never more than 1.25/rho0. (Without that, single drops at walls were seen to
+// blow up in thick fluid.)
 template <class I> HD inline void storeState(const View& v, I i, Real<I> rho) {
     using R = Real<I>;
     const R ratio = rho * R(1 / v.c.restDensity);
     R power = ratio;
     for (int k = 1; k < v.c.gamma; ++k) power = power * ratio;
-    const R pressure = max(mulAdd(R(v.c.stiffness), power - R(1), R(v.c.backgroundPressure)), R(v.c.leastPressure));
+    const R pressure = max(mulAdd(R(v.c.stiffness), power - R(1), R(v.c.backgroundPressure)),
+                           R(v.c.leastPressure));
     const R inverse = R(1) / max(rho, R(real(0.8) * v.c.restDensity));
     store(v.fluid.density, i, rho);
     store(v.fluid.inverseDensity, i, inverse);
@@ -92,7 +107,8 @@ template <class Kernel> struct ComputeDensity {
         if (!isDue<dueFrom>(v.fluid, i)) return;
         const Vector<R> x = load(v.fluid.position, i);
         R fluid = 0;
-        forNeighbours<lists>(v, v.fluidNearFluid, i, x, [&](const auto& p, Four) LANE_CALL { fluid += Kernel::w(p.q); });
+        forNeighbours<lists>(v, v.fluidNearFluid, i, x,
+                             [&](const auto& p, Four) LANE_CALL { fluid += Kernel::w(p.q); });
         finish(i, x, total(fluid));
     }
     HD void finish(Group i, Vector<R> x, R fluid) const {
@@ -121,10 +137,11 @@ struct ApplyEquationOfState {
     HD void operator()(Quad i) const { storeState(v, i, load(v.fluid.density, i)); }
 };
 
-// What the fluid's pressure would be at a boundary particle: p_b = sum_f (p_f + rho_f g.(x_b - x_f)) W / sum_f W,
-// Adami 2012, eq. 27, without the wall's acceleration. With `sticks` also the velocity that makes it the wall's own at the
-// wall, along a straight line from the mean of the fluid nearby (Adami 2012 takes both sides as equally far, as Morris 1997 does not); with
-// `dense` the density of that pressure, for its gradient.
+// What the fluid's pressure would be at a boundary particle: p_b = sum_f (p_f + rho_f g.(x_b -
+// x_f)) W / sum_f W, Adami 2012, eq. 27, without the wall's acceleration. With `sticks` also the
+// velocity that makes it the wall's own at the wall, along a straight line from the mean of the
+// fluid nearby (Adami 2012 takes both sides as equally far, as Morris 1997 does not); with `dense`
+// the density of that pressure, for its gradient.
 template <class Kernel, bool sticks, bool dense> struct ExtrapolateToWalls {
     using Index = Group;
     using R = Real<Group>;
@@ -140,7 +157,8 @@ template <class Kernel, bool sticks, bool dense> struct ExtrapolateToWalls {
         Vector<R> velocity{0, 0, 0};
         forNeighbours<Lists::All>(v, v.fluidNearWalls, b, x, [&](const auto& p, Four j) LANE_CALL {
             const R rho = load(v.fluid.density, j), w = Kernel::w(p.q);
-            const R pull = v.fluid.massRatio.data ? load(v.fluid.massRatio, j) * dot(force, p.r) : dot(force, p.r);
+            const R pull = v.fluid.massRatio.data ? load(v.fluid.massRatio, j) * dot(force, p.r)
+                                                  : dot(force, p.r);
             pressure = mulAdd(w * rho, mulAdd(rho, load(v.fluid.pressureTerm, j), pull), pressure);
             weight += w;
             if constexpr (sticks) {
@@ -151,12 +169,16 @@ template <class Kernel, bool sticks, bool dense> struct ExtrapolateToWalls {
         const R perWeight = R(1) / max(total(weight), R(real(1e-6)));
         const R mean = max(total(pressure) * perWeight, R(v.c.leastPressure));
         store(v.walls.pressureTerm, b, mean * R(1 / (v.c.restDensity * v.c.restDensity)));
-        if constexpr (sticks) storeVelocity(b, ownVelocity(v.walls, b), perWeight * total(velocity), out, perWeight * total(apart));
+        if constexpr (sticks)
+            storeVelocity(b, ownVelocity(v.walls, b), perWeight * total(velocity), out,
+                          perWeight * total(apart));
         if constexpr (dense)
-            store(v.walls.density, b, mulAdd(mean, R(1 / (v.c.soundSpeed * v.c.soundSpeed)), R(v.c.restDensity)));
+            store(v.walls.density, b,
+                  mulAdd(mean, R(1 / (v.c.soundSpeed * v.c.soundSpeed)), R(v.c.restDensity)));
     }
-    // `apart` is the distance to the fluid along `out`, times its length. Fluid that touches the wall would ask for any speed: no line is
-    // steeper than if the fluid were a third as far away as the wall's particle.
+    // `apart` is the distance to the fluid along `out`, times its length. Fluid that touches the
+    // wall would ask for any speed: no line is steeper than if the fluid were a third as far away
+    // as the wall's particle.
     HD void storeVelocity(Group b, Vector<R> wall, Vector<R> fluid, Vector<R> out, R apart) const {
         const R depth2 = dot(out, out);
         const R ratio = depth2 / max(apart - depth2, max(depth2 * R(real(1) / 3), R(real(1e-20))));
@@ -164,36 +186,44 @@ template <class Kernel, bool sticks, bool dense> struct ExtrapolateToWalls {
     }
 };
 
-// The moments of a particle's neighbours, M = -sum_j V_j r grad W, which is 1 on a lattice, and what they correct: gradients
-// divided by M are exact for linear fields, Laplacians by its trace for parabolas (Randles & Libersky 1996). Where neighbours are too few
-// or lie in a plane, nothing is corrected.
+// The moments of a particle's neighbours, M = -sum_j V_j r grad W, which is 1 on a lattice, and
+// what they correct: gradients divided by M are exact for linear fields, Laplacians by its trace
+// for parabolas (Randles & Libersky 1996). Where neighbours are too few or lie in a plane, nothing
+// is corrected.
 template <class R> struct Correction {
-    Symmetric<R> inverse;   // of M
-    R determinant;          // of M: 1 with neighbours all around, about a third at a flat surface
-    R perTrace;             // d / trace of M
+    Symmetric<R> inverse;  // of M
+    R determinant;         // of M: 1 with neighbours all around, about a third at a flat surface
+    R perTrace;            // d / trace of M
     HD Correction(const Constants& c, const Symmetric<R>& sums) {
         const R scale = -c.gradientScale;
-        Symmetric<R> m{scale * sums.xx, scale * sums.yy, scale * sums.zz, scale * sums.xy, scale * sums.xz, scale * sums.yz};
+        Symmetric<R> m{scale * sums.xx, scale * sums.yy, scale * sums.zz,
+                       scale * sums.xy, scale * sums.xz, scale * sums.yz};
         perTrace = R(c.dimensions) / max(m.xx + m.yy + m.zz, R(real(0.1)));
         m.zz += R(c.flatMoment);
-        const R xx = m.yy * m.zz - m.yz * m.yz, xy = m.xz * m.yz - m.xy * m.zz, xz = m.xy * m.yz - m.xz * m.yy;
+        const R xx = m.yy * m.zz - m.yz * m.yz, xy = m.xz * m.yz - m.xy * m.zz,
+                xz = m.xy * m.yz - m.xz * m.yy;
         const R det = m.xx * xx + m.xy * xy + m.xz * xz, one = 1, zero = 0;
         const auto solvable = det > R(real(0.1));
         const R d = one / max(det, R(real(0.1)));
         determinant = det;
-        inverse = {select(solvable, d * xx, one), select(solvable, d * (m.xx * m.zz - m.xz * m.xz), one),
-                   select(solvable, d * (m.xx * m.yy - m.xy * m.xy), one), select(solvable, d * xy, zero),
-                   select(solvable, d * xz, zero), select(solvable, d * (m.xy * m.xz - m.xx * m.yz), zero)};
+        inverse = {select(solvable, d * xx, one),
+                   select(solvable, d * (m.xx * m.zz - m.xz * m.xz), one),
+                   select(solvable, d * (m.xx * m.yy - m.xy * m.xy), one),
+                   select(solvable, d * xy, zero),
+                   select(solvable, d * xz, zero),
+                   select(solvable, d * (m.xy * m.xz - m.xx * m.yz), zero)};
     }
 };
 
-// a_i = body force + m gradientNorm/R^5 times the sum of the scene's terms, corrected where the terms ask for it. With `Alone` just the sum, with
-// `Added` on top of what acceleration is already.
+// a_i = body force + m gradientNorm/R^5 times the sum of the scene's terms, corrected where the
+// terms ask for it. With `Alone` just the sum, with `Added` on top of what acceleration is already.
 enum class Forces { All, Alone, Added };
 template <class Kernel, Lists lists, class Terms, Forces role = Forces::All> struct ComputeForces;
-template <class Kernel, Lists which, class... Terms, Forces role> struct ComputeForces<Kernel, which, TermList<Terms...>, role> {
+template <class Kernel, Lists which, class... Terms, Forces role>
+struct ComputeForces<Kernel, which, TermList<Terms...>, role> {
     static constexpr Lists lists = which;
-    static constexpr uint8_t dueFrom = which == Lists::Prune ? Watched : Due;   // the density's rate needs the pruned lists
+    static constexpr uint8_t dueFrom =
+        which == Lists::Prune ? Watched : Due;  // the density's rate needs the pruned lists
     using Index = Group;
     using R = Real<Group>;
     static constexpr unsigned needs = TermList<Terms...>::needs;
@@ -203,40 +233,51 @@ template <class Kernel, Lists which, class... Terms, Forces role> struct Compute
         const Vector<R> x = load(v.fluid.position, i);
         const State<R> own = state(i);
         Acceleration<R> a{};
-        forNeighbours<lists>(v, v.fluidNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL { add(p, own, state(j), a); });
+        forNeighbours<lists>(v, v.fluidNearFluid, i, x,
+                             [&](const auto& p, Four j) LANE_CALL { add(p, own, state(j), a); });
         finish(i, x, own, a, {});
     }
     template <class I> HD State<R> state(I i) const { return loadState<needs>(v.fluid, i); }
-    template <class A> HD void add(const Pair<R>& p, const State<R>& own, const State<R>& other, A& a) const {
+    template <class A>
+    HD void add(const Pair<R>& p, const State<R>& own, const State<R>& other, A& a) const {
         const Weights<R> k = weights<Kernel>(p.q);
         (Terms::add(v.c, p, k, own, other, a), ...);
     }
     // `a`: lane by lane, `whole`: the same for all of a particle's lanes.
-    HD void finish(Group i, Vector<R> x, const State<R>& own, Acceleration<R> a, Vector<R> whole) const {
+    HD void finish(Group i, Vector<R> x, const State<R>& own, Acceleration<R> a,
+                   Vector<R> whole) const {
         const Vector<real> gravity = gravityNow(v);
         forNeighbours<lists>(v, v.wallsNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
-            (Terms::addWall(v.c, p, weights<Kernel>(p.q), own, loadWall<needs>(v.walls, j), a), ...);
+            (Terms::addWall(v.c, p, weights<Kernel>(p.q), own, loadWall<needs>(v.walls, j), a),
+             ...);
         });
-        const R scale = v.fluid.massRatio.data ? R(v.c.gradientScale) / load(v.fluid.massRatio, i) : R(v.c.gradientScale);
+        const R scale = v.fluid.massRatio.data ? R(v.c.gradientScale) / load(v.fluid.massRatio, i)
+                                               : R(v.c.gradientScale);
         Vector<R> pressure = scale * (whole + total(a.pressure)), other = scale * total(a.other);
         if constexpr (needs & Moments) {
             const Correction<R> correction(v.c, total(a.moments));
             pressure = -own.inverseDensity * (correction.inverse * pressure);
             other = correction.perTrace * other;
         }
-        if constexpr (role == Forces::Added) return store(v.fluid.acceleration, i, load(v.fluid.acceleration, i) + pressure + other);
-        if constexpr (role == Forces::Alone) return store(v.fluid.acceleration, i, limited(pressure) + other);
+        if constexpr (role == Forces::Added)
+            return store(v.fluid.acceleration, i, load(v.fluid.acceleration, i) + pressure + other);
+        if constexpr (role == Forces::Alone)
+            return store(v.fluid.acceleration, i, limited(pressure) + other);
         store(v.fluid.acceleration, i, limited(pressure) + other + bodyForce(v.c, gravity, x));
     }
     // For lists with each pair once (PairSums), where no part of the acceleration is limited.
     static constexpr bool opposite = true;
-    VectorField field() const { return role == Forces::Added ? v.fluid.addedForce : v.fluid.acceleration; }
+    VectorField field() const {
+        return role == Forces::Added ? v.fluid.addedForce : v.fluid.acceleration;
+    }
     HD Vector<R> of(const Pair<R>& p, const State<R>& own, const State<R>& other) const {
         PairAcceleration<R> a{};
         add(p, own, other, a);
         return a.sum(p.r);
     }
-    HD void finish(Group i) const { finish(i, load(v.fluid.position, i), state(i), {}, load(field(), i)); }
+    HD void finish(Group i) const {
+        finish(i, load(v.fluid.position, i), state(i), {}, load(field(), i));
+    }
     HD Vector<R> limited(Vector<R> a) const {
         const R limit = v.c.accelerationLimit;
         return (limit / squareRoot(max(dot(a, a), limit * limit))) * a;
@@ -244,12 +285,13 @@ template <class Kernel, Lists which, class... Terms, Forces role> struct Compute
 };
 
 // The gradient of density that hydrostatic pressure makes.
-template <class R> HD inline Vector<R> hydrostaticSlope(const Constants& c, Vector<real> gravityNow, Vector<R> x) {
+template <class R>
+HD inline Vector<R> hydrostaticSlope(const Constants& c, Vector<real> gravityNow, Vector<R> x) {
     return R(c.restDensity / (c.soundSpeed * c.soundSpeed)) * bodyForce(c, gravityNow, x);
 }
 
-// d rho/dt = -rho div u + delta h c 2 sum_j V_j (rho_j - rho_i - rho_H) (-F), Molteni & Colagrossi 2009, without the
-// difference rho_H that hydrostatic pressure makes (Fourtakas 2019).
+// d rho/dt = -rho div u + delta h c 2 sum_j V_j (rho_j - rho_i - rho_H) (-F), Molteni & Colagrossi
+// 2009, without the difference rho_H that hydrostatic pressure makes (Fourtakas 2019).
 template <class Kernel> struct ComputeDensityRate {
     using Index = Group;
     using R = Real<Group>;
@@ -261,47 +303,57 @@ template <class Kernel> struct ComputeDensityRate {
         const R rho = load(v.fluid.density, i);
         R diffusion = v.c.diffusion;
         Vector<R> slope = hydrostaticSlope(v.c, gravity, x);
-        if (v.fluid.massRatio.data) {   // who is heavier has a lower speed of sound
+        if (v.fluid.massRatio.data) {  // who is heavier has a lower speed of sound
             const R ratio = load(v.fluid.massRatio, i);
             slope = ratio * slope, diffusion = diffusion / squareRoot(ratio);
         }
         R sum = 0;
-        forNeighbours<Lists::Pruned>(v, v.fluidNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
-            const R approach = rho * dot(u - load(v.fluid.velocity, j), p.r);
-            const R excess = load(v.fluid.density, j) - rho + dot(slope, p.r);
-            sum = mulAdd(Kernel::g(p.q) * load(v.fluid.inverseDensity, j), negMulAdd(diffusion, excess, approach), sum);
-        });
+        forNeighbours<Lists::Pruned>(
+            v, v.fluidNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
+                const R approach = rho * dot(u - load(v.fluid.velocity, j), p.r);
+                const R excess = load(v.fluid.density, j) - rho + dot(slope, p.r);
+                sum = mulAdd(Kernel::g(p.q) * load(v.fluid.inverseDensity, j),
+                             negMulAdd(diffusion, excess, approach), sum);
+            });
         R walls = 0;
-        forNeighbours<Lists::Pruned>(v, v.wallsNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
-            walls = mulAdd(Kernel::g(p.q) * load(v.walls.mass, j), dot(u - ownVelocity(v.walls, j), p.r), walls);
-        });
+        forNeighbours<Lists::Pruned>(
+            v, v.wallsNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
+                walls = mulAdd(Kernel::g(p.q) * load(v.walls.mass, j),
+                               dot(u - ownVelocity(v.walls, j), p.r), walls);
+            });
         const R perRest = 1 / v.c.restDensity;
-        store(v.fluid.densityRate, i, R(v.c.gradientScale) * mulAdd(rho * perRest, total(walls), total(sum)));
+        store(v.fluid.densityRate, i,
+              R(v.c.gradientScale) * mulAdd(rho * perRest, total(walls), total(sum)));
     }
 };
 
-// Particles move by u + du instead of u, so that they stay evenly spread (Sun 2019), and carry the fields of where they are:
+// Particles move by u + du instead of u, so that they stay evenly spread (Sun 2019), and carry the
+// fields of where they are:
 //     d rho/dt = -rho div u + du.grad rho + delta h c Laplacian rho        du/dt = ... + du.grad u
-// Gradients are corrected. The Laplacians of density and (in the forces) velocity lose what linear fields add on uneven neighbours, 2 S.grad f
-// with S = sum_j V_j grad W. Walls take part with their own velocity, not with the one that viscosity sees (Adami 2012): with that one,
-// the error of cavity flow at Re = 100, 50 particles across, is 1.1 % instead of 0.23 %.
-// With a free `surface`, which the determinant of the moments tells (Sun 2019: their smallest eigenvalue), particles there are shifted along it
-// only and carry nothing, and those with hardly a neighbour are not shifted: gradients are poor there, and splashes gained energy. div u is the
-// plain sum, which pressure forces in pairs go with: what they take from motion is in compression then. Shifting changes the room of a
-// particle, not its mass: Sun 2019 takes rho div du as the difference of its two discrete forms, 2 rho du.S. (Without it, drops grow by 1 % a period.)
+// Gradients are corrected. The Laplacians of density and (in the forces) velocity lose what linear
+// fields add on uneven neighbours, 2 S.grad f with S = sum_j V_j grad W. Walls take part with their
+// own velocity, not with the one that viscosity sees (Adami 2012): with that one, the error of
+// cavity flow at Re = 100, 50 particles across, is 1.1 % instead of 0.23 %. With a free `surface`,
+// which the determinant of the moments tells (Sun 2019: their smallest eigenvalue), particles there
+// are shifted along it only and carry nothing, and those with hardly a neighbour are not shifted:
+// gradients are poor there, and splashes gained energy. div u is the plain sum, which pressure
+// forces in pairs go with: what they take from motion is in compression then. Shifting changes the
+// room of a particle, not its mass: Sun 2019 takes rho div du as the difference of its two discrete
+// forms, 2 rho du.S. (Without it, drops grow by 1 % a period.)
 template <class Kernel, bool surface> struct ComputeTransport {
     using Index = Group;
     using R = Real<Group>;
     View v;
     struct Sums {
         Symmetric<R> moments;
-        Vector<R> u, v, w, rho;     // weighted r times the differences of each: gradients
+        Vector<R> u, v, w, rho;  // weighted r times the differences of each: gradients
         Vector<R> uneven, shift;
-        R laplacian;                // of the density
+        R laplacian;  // of the density
         HD void add(R weight, Vector<R> r, Vector<R> velocity, R density, R excess, R crowding) {
             const Vector<R> wr = weight * r;
             moments = addOuter(moments, weight, r);
-            u = addScaled(u, velocity.x, wr), v = addScaled(v, velocity.y, wr), w = addScaled(w, velocity.z, wr);
+            u = addScaled(u, velocity.x, wr), v = addScaled(v, velocity.y, wr),
+            w = addScaled(w, velocity.z, wr);
             rho = addScaled(rho, density, wr);
             uneven = uneven + wr;
             shift = addScaled(shift, crowding, wr);
@@ -314,16 +366,19 @@ template <class Kernel, bool surface> struct ComputeTransport {
         const R rho = load(v.fluid.density, i), perRest = 1 / v.c.restDensity;
         const Vector<R> slope = hydrostaticSlope(v.c, gravity, x);
         Sums s{};
-        forNeighbours<Lists::Pruned>(v, v.fluidNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
-            const R more = load(v.fluid.density, j) - rho;
-            s.add(Kernel::g(p.q) * load(v.fluid.inverseDensity, j), p.r, load(v.fluid.velocity, j) - own, more,
-                  surface ? more + dot(slope, p.r) : more, crowding(p.q));
-        });
-        forNeighbours<Lists::Pruned>(v, v.wallsNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
-            const R more = load(v.walls.density, j) - rho;
-            s.add(Kernel::g(p.q) * load(v.walls.mass, j) * perRest, p.r, ownVelocity(v.walls, j) - own, more,
-                  surface ? R(0) : more, crowding(p.q));
-        });
+        forNeighbours<Lists::Pruned>(
+            v, v.fluidNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
+                const R more = load(v.fluid.density, j) - rho;
+                s.add(Kernel::g(p.q) * load(v.fluid.inverseDensity, j), p.r,
+                      load(v.fluid.velocity, j) - own, more,
+                      surface ? more + dot(slope, p.r) : more, crowding(p.q));
+            });
+        forNeighbours<Lists::Pruned>(
+            v, v.wallsNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
+                const R more = load(v.walls.density, j) - rho;
+                s.add(Kernel::g(p.q) * load(v.walls.mass, j) * perRest, p.r,
+                      ownVelocity(v.walls, j) - own, more, surface ? R(0) : more, crowding(p.q));
+            });
         finish(i, rho, s);
     }
     // Sun 2019: 1 + 0.2 (W / W(dx))^4 keeps particles from pairing.
@@ -334,8 +389,10 @@ template <class Kernel, bool surface> struct ComputeTransport {
     HD void finish(Group i, R rho, const Sums& s) const {
         const R scale = v.c.gradientScale;
         const Correction<R> correction(v.c, total(s.moments));
-        auto gradient = [&](Vector<R> sum) LANE_CALL { return scale * (correction.inverse * total(sum)); };
-        const Vector<R> gradU = gradient(s.u), gradV = gradient(s.v), gradW = gradient(s.w), gradRho = gradient(s.rho);
+        auto gradient = [&](Vector<R> sum)
+                            LANE_CALL { return scale * (correction.inverse * total(sum)); };
+        const Vector<R> gradU = gradient(s.u), gradV = gradient(s.v), gradW = gradient(s.w),
+                        gradRho = gradient(s.rho);
         const R two = 2;
         const Vector<R> uneven = (two * correction.perTrace * scale) * total(s.uneven);
         const Vector<R> inward = scale * total(s.uneven);
@@ -343,33 +400,42 @@ template <class Kernel, bool surface> struct ComputeTransport {
         R inside = 1;
         if constexpr (surface) {
             inside = between(real(0.6), real(0.85), correction.determinant);
-            wanted = between(real(0.2), real(0.35), correction.determinant) * alongSurface(wanted, inward, inside);
+            wanted = between(real(0.2), real(0.35), correction.determinant) *
+                     alongSurface(wanted, inward, inside);
         }
         const Vector<R> shift = limitedShift(wanted);
         // Half of `laminar` is the viscosity, of `diffusion` the diffusion's.
-        const R half = real(0.5), nu = surface ? R(0) : half * R(v.c.laminar) * load(v.fluid.inverseDensity, i);
+        const R half = real(0.5),
+                nu = surface ? R(0) : half * R(v.c.laminar) * load(v.fluid.inverseDensity, i);
         const Vector<R> along = subtractScaled(inside * shift, nu, uneven);
-        const R diffused = surface ? two * scale * total(s.laplacian)
-                                   : two * correction.perTrace * scale * total(s.laplacian) - dot(uneven, gradRho);
-        const R divergence = surface ? scale * total(s.u.x + s.v.y + s.w.z) - roomLost(shift, inward) : gradU.x + gradV.y + gradW.z;
+        const R diffused =
+            surface ? two * scale * total(s.laplacian)
+                    : two * correction.perTrace * scale * total(s.laplacian) - dot(uneven, gradRho);
+        const R divergence = surface
+                                 ? scale * total(s.u.x + s.v.y + s.w.z) - roomLost(shift, inward)
+                                 : gradU.x + gradV.y + gradW.z;
         const R rate = inside * dot(shift, gradRho) - rho * divergence;
         store(v.fluid.densityRate, i, mulAdd(half * R(v.c.diffusion), diffused, rate));
         store(v.fluid.shiftVelocity, i, shift);
-        store(v.fluid.shiftAcceleration, i, Vector<R>{dot(along, gradU), dot(along, gradV), dot(along, gradW)});
+        store(v.fluid.shiftAcceleration, i,
+              Vector<R>{dot(along, gradU), dot(along, gradV), dot(along, gradW)});
     }
     // 0 below `low`, 1 above `high`, smooth in between.
     HD static R between(real low, real high, R value) {
         const R t = min(max((value - R(low)) * R(1 / (high - low)), R(0)), R(1));
         return t * t * (R(3) - R(2) * t);
     }
-    // Where neighbours are missing the shift loses its part along S, which points inward (Sun 2019).
+    // Where neighbours are missing the shift loses its part along S, which points inward (Sun
+    // 2019).
     HD static Vector<R> alongSurface(Vector<R> shift, Vector<R> inward, R inside) {
         const R across = dot(shift, inward) / max(dot(inward, inward), R(real(1e-20)));
         return subtractScaled(shift, (R(1) - inside) * across, inward);
     }
-    // 1/s. Where fluid is torn its pressure would fall on and on: at most twice what swinging drops need, 0.02 U / R.
+    // 1/s. Where fluid is torn its pressure would fall on and on: at most twice what swinging drops
+    // need, 0.02 U / R.
     HD R roomLost(Vector<R> shift, Vector<R> inward) const {
-        return max(R(real(2)) * dot(shift, inward), R(real(-0.04) * real(v.state->speed) / v.c.support));
+        return max(R(real(2)) * dot(shift, inward),
+                   R(real(-0.04) * real(v.state->speed) / v.c.support));
     }
     // At most half as fast as the fastest fluid.
     HD Vector<R> limitedShift(Vector<R> shift) const {
@@ -380,7 +446,7 @@ template <class Kernel, bool surface> struct ComputeTransport {
 
 // The largest speed and acceleration, for the time step; with shifting also the sum of rho0/rho.
 struct Extremes {
-    float speed2 = 0, acceleration2 = 0;   // (m/s)^2, (m/s²)^2
+    float speed2 = 0, acceleration2 = 0;  // (m/s)^2, (m/s²)^2
     double volume = 0, count = 0;
     HD_OUT void add(const Extremes& o) {
         speed2 = o.speed2 > speed2 ? o.speed2 : speed2;
@@ -395,13 +461,16 @@ template <bool volume> struct FindExtremes {
         if (p.id[i] < 0) return;
         const Vector<real> u = load(p.velocity, i), a = load(p.acceleration, i);
         Extremes one{float(dot(u, u)), float(dot(a, a))};
-        if constexpr (volume) one.volume = double(restDensity * load(p.inverseDensity, i)), one.count = 1;
+        if constexpr (volume)
+            one.volume = double(restDensity * load(p.inverseDensity, i)), one.count = 1;
         e.add(one);
     }
 };
 
 // Courant's limit, s.
-HD inline real acousticStep(const Constants& c, real speed) { return c.cfl * (c.support / 2) / (c.fastestSound + max(speed, c.solidSpeed)); }
+HD inline real acousticStep(const Constants& c, real speed) {
+    return c.cfl * (c.support / 2) / (c.fastestSound + max(speed, c.solidSpeed));
+}
 // A step is shorter where whole ones would miss the time at which the run stops.
 HD inline double untilStop(const StepState& s, double dt) {
     const double left = s.stop - s.time;
@@ -414,7 +483,8 @@ HD inline void advanceTime(StepState& s, double dt) {
     if (s.stop - s.time < 1e-6 * dt && s.time - s.stop < 1e-6 * dt) s.time = s.stop;
 }
 
-// dt from the sound speed, the largest velocity and acceleration, and the viscosity (Monaghan 1992, Morris 1997).
+// dt from the sound speed, the largest velocity and acceleration, and the viscosity (Monaghan 1992,
+// Morris 1997).
 struct ChooseTimeStep {
     using Index = int;
     View v;
@@ -422,13 +492,14 @@ struct ChooseTimeStep {
     HD void operator()(int) const {
         const Constants& c = v.c;
         double dt = c.fixedStep;
-        real solids = 0;   // that float
+        real solids = 0;  // that float
         for (int s = 0; s < v.solidCount; ++s) solids = max(solids, v.solids[s].speed);
         const real speed = squareRoot(real(extremes->speed2));
         if (dt <= 0) {
             const real pull = squareRoot(real(extremes->acceleration2));
             const real fastest = min(acousticStep(c, max(speed, solids)), c.maxStep);
-            dt = untilStop(*v.state, min(fastest, real(0.25) * squareRoot(c.support / 2 / max(pull, real(1e-12)))));
+            dt = untilStop(*v.state, min(fastest, real(0.25) * squareRoot(c.support / 2 /
+                                                                          max(pull, real(1e-12)))));
         }
         v.state->dt = dt;
         v.state->speed = speed;
@@ -438,19 +509,25 @@ struct ChooseTimeStep {
     }
 };
 
-// What slows particles down without a neighbour: dissipation, -d u, and the air, as it slows spheres of their volume: -k |u - wind| (u - wind) where
-// nothing hides them, which is where their density is no more than what they have of themselves.
+// What slows particles down without a neighbour: dissipation, -d u, and the air, as it slows
+// spheres of their volume: -k |u - wind| (u - wind) where nothing hides them, which is where their
+// density is no more than what they have of themselves.
 struct ResistMotion {
     using Index = Quad;
     View v;
     HD void operator()(Quad i) const {
         using R = Real<Quad>;
         if (!isDue(v.fluid, i)) return;
-        const Vector<R> u = load(v.fluid.velocity, i), wind{v.c.wind.x, v.c.wind.y, v.c.wind.z}, past = u - wind;
-        const R hidden = (load(v.fluid.density, i) * R(1 / v.c.restDensity) - R(v.c.aloneDensity)) * R(1 / (1 - v.c.aloneDensity));
+        const Vector<R> u = load(v.fluid.velocity, i), wind{v.c.wind.x, v.c.wind.y, v.c.wind.z},
+                        past = u - wind;
+        const R hidden = (load(v.fluid.density, i) * R(1 / v.c.restDensity) - R(v.c.aloneDensity)) *
+                         R(1 / (1 - v.c.aloneDensity));
         const R exposed = R(1) - min(max(hidden, R(0)), R(1));
-        const R drag = R(v.c.airDrag) * exposed * squareRoot(dot(past, past)) / massRatio(v.fluid, i);
-        store(v.fluid.acceleration, i, subtractScaled(subtractScaled(load(v.fluid.acceleration, i), R(v.c.dissipation), u), drag, past));
+        const R drag =
+            R(v.c.airDrag) * exposed * squareRoot(dot(past, past)) / massRatio(v.fluid, i);
+        store(v.fluid.acceleration, i,
+              subtractScaled(subtractScaled(load(v.fluid.acceleration, i), R(v.c.dissipation), u),
+                             drag, past));
     }
 };
 

@@ -20,18 +20,20 @@ template <class Device> template <class K> void SimulationOn<Device>::makePlan()
             moveThings(&S::template moveFloating<2, true>);
             advance<K, Kick, Drift>({"integrate", "kick", "drift"});
             break;
-        // Verlet 1967 with velocities: forces at the end of the step with the velocity foreseen there, of which then half is
-        // taken back for half of the new acceleration.
+        // Verlet 1967 with velocities: forces at the end of the step with the velocity foreseen
+        // there, of which then half is taken back for half of the new acceleration.
         case Integrator::VelocityVerlet:
             chooseStep();
             moveThings(&S::template moveFloating<1, true>);
             advance<K, HalfKick, Drift | KeepVelocity | KickOn>({"integrate", "kick", "drift"});
             evaluateForces<K>(Initial::Yes);
-            addPass("floating solids", &S::template moveFloating<1, false>, Initial::No, whyNothingFloats());
+            addPass("floating solids", &S::template moveFloating<1, false>, Initial::No,
+                    whyNothingFloats());
             addPass("second kick", &S::template onFluid<Integrate<Resume | HalfKick>>);
             break;
-        // Half a step ahead; from there the forces and then, with the mean velocity, the rates of the whole step (Monaghan 1989;
-        // the mean of old and new velocity keeps oscillations from growing, as in a leapfrog).
+        // Half a step ahead; from there the forces and then, with the mean velocity, the rates of
+        // the whole step (Monaghan 1989; the mean of old and new velocity keeps oscillations from
+        // growing, as in a leapfrog).
         case Integrator::PredictorCorrector:
             evaluateForces<K>(Initial::Yes);
             chooseStep();
@@ -39,9 +41,11 @@ template <class Device> template <class K> void SimulationOn<Device>::makePlan()
             evaluateForces<K>(Initial::No);
             addPass("extremes", &S::countCorrection, Initial::No, keepsLists ? "" : noLists);
             moveThings(&S::template moveFloating<2, true>);
-            advance<K, Resume | HalfKick, Resume | Drift | KickOn>({"correct", "second kick", "correct"});
+            advance<K, Resume | HalfKick, Resume | Drift | KickOn>(
+                {"correct", "second kick", "correct"});
             break;
-        // Viscosity and external forces lead to the densities of whose pressure the rest of the step is.
+        // Viscosity and external forces lead to the densities of whose pressure the rest of the
+        // step is.
         case Integrator::Split:
             evaluateForces<K>(Initial::Yes);
             chooseStep();
@@ -51,41 +55,54 @@ template <class Device> template <class K> void SimulationOn<Device>::makePlan()
             addPass("foresee density", &S::template onFluid<Integrate<DriftDensity>>);
             addPass("equation of state", &S::template onFluid<ApplyEquationOfState>);
             addPass("walls", wallPass<K>(), Initial::No, whyNoWallPressure());
-            addPass("pressure", &S::template onFluid<ComputeForces<K, Lists::Pruned, TermList<PressureForce>, Forces::Alone>>);
+            addPass("pressure",
+                    &S::template onFluid<
+                        ComputeForces<K, Lists::Pruned, TermList<PressureForce>, Forces::Alone>>);
             addPass("extremes", &S::countPressure, Initial::No, keepsLists ? "" : noLists);
             addPass("integrate", &S::template onFluid<Integrate<Kick | Drift>>);
             break;
     }
     noteTerms(OptionalTerms{});
     noteTerms(Mixing{});
-    addPass("solid collisions", &S::keepOutOfSolids, Initial::No, solids_.count() > 0 ? "" : "there are no solids");
+    addPass("solid collisions", &S::keepOutOfSolids, Initial::No,
+            solids_.count() > 0 ? "" : "there are no solids");
     findLoads_ = loadPass<K>();
-    sortsInStep_ = int(std::count_if(plan_.begin(), plan_.end(), [](const Row& row) { return row.run == &S::sort; }));
+    sortsInStep_ = int(std::count_if(plan_.begin(), plan_.end(),
+                                     [](const Row& row) { return row.run == &S::sort; }));
     for (Row& row : plan_) row.time = timeOf(row.name);
 }
 
 // Acceleration of where the particles are.
-template <class Device> template <class K> void SimulationOn<Device>::evaluateForces(Initial initial) {
+template <class Device> template <class K>
+void SimulationOn<Device>::evaluateForces(Initial initial) {
     using S = SimulationOn;
     addPass("solids", initial == Initial::Yes ? &S::moveSolids : &S::moveSolidsHalfWay, initial,
-            solids_.moves() ? "" : solids_.count() > 0 ? "no solid moves" : "there are no solids");
+            solids_.moves()       ? ""
+            : solids_.count() > 0 ? "no solid moves"
+                                  : "there are no solids");
     addPass("sort", &S::sort, initial);
-    addPass("rest", &S::findWhoRests, initial, !hasLocalSteps() ? allAlike : constants_.restSpeed > 0 ? "" : "nobody rests (time.rest_speed)");
+    addPass("rest", &S::findWhoRests, initial,
+            !hasLocalSteps()           ? allAlike
+            : constants_.restSpeed > 0 ? ""
+                                       : "nobody rests (time.rest_speed)");
     addPass("due", &S::findWhoIsDue, initial, hasLocalSteps() ? "" : allAlike);
     addPass("neighbours", &S::findNeighbours, initial, keepsLists ? "" : noLists);
-    carriesDensity(scene_) ? addPass("equation of state", &S::template onFluid<ApplyEquationOfState>, initial)
-                           : addPass("density", pairPass<ComputeDensity<K>>(), initial);
+    carriesDensity(scene_)
+        ? addPass("equation of state", &S::template onFluid<ApplyEquationOfState>, initial)
+        : addPass("density", pairPass<ComputeDensity<K>>(), initial);
     addPass("walls", wallPass<K>(), initial, whyNoWallPressure());
     addPass("forces", forcePass<K>(), initial);
     const char* noTension = scene_.fluid.surfaceTension > 0 ? "" : "fluid.surface_tension is 0";
     addPass("normals", &S::template onFluid<ComputeNormals>, initial, noTension);
     addPass("surface tension", &S::template onFluid<AddSurfaceTension>, initial, noTension);
-    addPass("mixing", pairPass<ComputeForces<MeanKernel, Lists::Pruned, Mixing, Forces::Added>>(), initial,
-            mixes(scene_) ? "" : "fluid.velocity_transfer and fluid.buoyancy are 0");
+    addPass("mixing", pairPass<ComputeForces<MeanKernel, Lists::Pruned, Mixing, Forces::Added>>(),
+            initial, mixes(scene_) ? "" : "fluid.velocity_transfer and fluid.buoyancy are 0");
     addPass("solid forces", &S::findSolidForces, initial, whyNothingFloats());
     addPass("contact", &S::touchObjects, initial, whyNoObjects());
-    addPass("resistance", &S::template onFluid<ResistMotion>, initial, scene_.fluid.dissipation + scene_.fluid.airDensity > 0 ? "" :
-            "fluid.dissipation and fluid.air_density are 0");
+    addPass("resistance", &S::template onFluid<ResistMotion>, initial,
+            scene_.fluid.dissipation + scene_.fluid.airDensity > 0
+                ? ""
+                : "fluid.dissipation and fluid.air_density are 0");
 }
 
 // Solids and objects, by the forces that were found last; also those that the mouse drags.
@@ -101,7 +118,8 @@ template <class Device> template <class K> void SimulationOn<Device>::stepLocall
     addPass("step", &S::beginStep);
     evaluateForces<K>(Initial::Yes);
     addPass("kick", &S::template onFluid<KickDue>);
-    addPass("stir", &S::template onFluid<StirFluid>, Initial::No, stir_.radius > 0 ? "" : "nobody stirs");
+    addPass("stir", &S::template onFluid<StirFluid>, Initial::No,
+            stir_.radius > 0 ? "" : "nobody stirs");
     addPass("moment", &S::chooseMoment);
     if (!carriesDensity(scene_)) return addPass("drift", &S::template onFluid<Integrate<Drift>>);
     addPass("density rate", ratePass<K>());
@@ -110,24 +128,32 @@ template <class Device> template <class K> void SimulationOn<Device>::stepLocall
 
 template <class Device> void SimulationOn<Device>::chooseStep() {
     using S = SimulationOn;
-    addPass("extremes", fillsSpace() ? &S::findExtremes<true> : &S::findExtremes<false>, Initial::No,
-            keepsLists || shifts() || constants_.fixedStep <= 0 ? "" : "the time step is fixed (time.mode)");
+    addPass(
+        "extremes", fillsSpace() ? &S::findExtremes<true> : &S::findExtremes<false>, Initial::No,
+        keepsLists || shifts() || constants_.fixedStep <= 0 ? ""
+                                                            : "the time step is fixed (time.mode)");
     addPass("time step", &S::chooseTimeStep);
-    addPass("stir", &S::template onFluid<StirFluid>, Initial::No, stir_.radius > 0 ? "" : "nobody stirs");
+    addPass("stir", &S::template onFluid<StirFluid>, Initial::No,
+            stir_.radius > 0 ? "" : "nobody stirs");
 }
 
 // In one pass; where density is carried in two, between which its rate comes.
-template <class Device> template <class K, unsigned kick, unsigned drift> void SimulationOn<Device>::advance(Names names) {
+template <class Device> template <class K, unsigned kick, unsigned drift>
+void SimulationOn<Device>::advance(Names names) {
     using S = SimulationOn;
-    if (!carriesDensity(scene_)) return addPass(names.both, &S::template onFluid<Integrate<kick | drift>>);
+    if (!carriesDensity(scene_))
+        return addPass(names.both, &S::template onFluid<Integrate<kick | drift>>);
     if constexpr (kick != 0) addPass(names.kick, &S::template onFluid<Integrate<kick>>);
     addPass(shifts() ? "transport" : "density rate", ratePass<K>());
-    addPass(names.drift, fillsSpace() ? &S::template onFluid<Integrate<drift | DriftDensity | DriftShifted | KeepVolume>>
-                         : shifts()   ? &S::template onFluid<Integrate<drift | DriftDensity | DriftShifted>>
-                                      : &S::template onFluid<Integrate<drift | DriftDensity>>);
+    addPass(names.drift,
+            fillsSpace()
+                ? &S::template onFluid<Integrate<drift | DriftDensity | DriftShifted | KeepVolume>>
+            : shifts() ? &S::template onFluid<Integrate<drift | DriftDensity | DriftShifted>>
+                       : &S::template onFluid<Integrate<drift | DriftDensity>>);
 }
 
-template <class Device> template <class K> auto SimulationOn<Device>::wallPass() const -> PassFunction {
+template <class Device> template <class K> auto SimulationOn<Device>::wallPass() const
+    -> PassFunction {
     using S = SimulationOn;
     if (shifts())
         return fluidSticks() ? &S::template onWalls<ExtrapolateToWalls<K, true, true>>
@@ -137,36 +163,53 @@ template <class Device> template <class K> auto SimulationOn<Device>::wallPass()
 }
 
 // The first pass over the fluid's neighbours in a step prunes the lists.
-template <class Device> template <class K> auto SimulationOn<Device>::forcePass() const -> PassFunction {
+template <class Device> template <class K> auto SimulationOn<Device>::forcePass() const
+    -> PassFunction {
     if (fillsSpace())
-        return *LaminarViscosity::skipped(scene_) ? forces<K, Lists::Prune>(TermList<CorrectedPressureForce>{})
-                                                  : forces<K, Lists::Prune>(TermList<CorrectedPressureForce, LaminarViscosity>{});
+        return *LaminarViscosity::skipped(scene_)
+                   ? forces<K, Lists::Prune>(TermList<CorrectedPressureForce>{})
+                   : forces<K, Lists::Prune>(TermList<CorrectedPressureForce, LaminarViscosity>{});
     if (scene_.time.integrator == Integrator::Split) return forces<K, Lists::Prune>(Viscosities{});
     if (isMixture(scene_)) {
         using Terms = TermList<PressureForce, MixtureViscosity>;
-        return carriesDensity(scene_) ? forces<K, Lists::Prune>(Terms{}) : pairPass<ComputeForces<K, Lists::Pruned, Terms>>();
+        return carriesDensity(scene_) ? forces<K, Lists::Prune>(Terms{})
+                                      : pairPass<ComputeForces<K, Lists::Pruned, Terms>>();
     }
     if (carriesDensity(scene_))
-        return chooseTerms(scene_, [](auto terms) { return forces<K, Lists::Prune>(terms); }, TermList<PressureForce>{}, Viscosities{});
+        return chooseTerms(
+            scene_, [](auto terms) { return forces<K, Lists::Prune>(terms); },
+            TermList<PressureForce>{}, Viscosities{});
     if (scene_.simulation.formulation == Formulation::Classic)
-        return chooseTerms(scene_, [](auto terms) { return forces<K, Lists::Pruned>(terms); }, TermList<PressureForce>{},
-                           TermList<ClassicViscosity>{});
+        return chooseTerms(
+            scene_, [](auto terms) { return forces<K, Lists::Pruned>(terms); },
+            TermList<PressureForce>{}, TermList<ClassicViscosity>{});
     if (scene_.simulation.pressureForm == PressureForm::Mean)
-        return pairPass<ComputeForces<K, Lists::Pruned, TermList<MeanPressureForce, LaminarViscosity, ArtificialViscosity>>>();
-    return chooseTerms(scene_, [this](auto terms) { return pairPass<ComputeForces<K, Lists::Pruned, decltype(terms)>>(); },
-                       TermList<PressureForce>{}, Viscosities{});
+        return pairPass<
+            ComputeForces<K, Lists::Pruned,
+                          TermList<MeanPressureForce, LaminarViscosity, ArtificialViscosity>>>();
+    return chooseTerms(
+        scene_,
+        [this](auto terms) { return pairPass<ComputeForces<K, Lists::Pruned, decltype(terms)>>(); },
+        TermList<PressureForce>{}, Viscosities{});
 }
 
-// What fluid does to solids, by the terms that act on the fluid. (Corrected gradients have no opposite: their pressure is taken as it is
-// without.)
-template <class Device> template <class K> auto SimulationOn<Device>::loadPass() const -> PassFunction {
+// What fluid does to solids, by the terms that act on the fluid. (Corrected gradients have no
+// opposite: their pressure is taken as it is without.)
+template <class Device> template <class K> auto SimulationOn<Device>::loadPass() const
+    -> PassFunction {
     using Mixed = TermList<PressureForce, MixtureViscosity>;
     if (isMixture(scene_)) return &SimulationOn::template findLoads<ComputeWallLoads<K, Mixed>>;
-    return chooseTerms(scene_, [](auto terms) { return PassFunction(&SimulationOn::template findLoads<ComputeWallLoads<K, decltype(terms)>>); },
-                       TermList<PressureForce>{}, Viscosities{});
+    return chooseTerms(
+        scene_,
+        [](auto terms) {
+            return PassFunction(
+                &SimulationOn::template findLoads<ComputeWallLoads<K, decltype(terms)>>);
+        },
+        TermList<PressureForce>{}, Viscosities{});
 }
 
-template <class Device> template <class K> auto SimulationOn<Device>::ratePass() const -> PassFunction {
+template <class Device> template <class K> auto SimulationOn<Device>::ratePass() const
+    -> PassFunction {
     if (fillsSpace()) return &SimulationOn::template onFluid<ComputeTransport<K, false>>;
     return shifts() ? &SimulationOn::template onFluid<ComputeTransport<K, true>>
                     : &SimulationOn::template onFluid<ComputeDensityRate<K>>;

@@ -8,16 +8,19 @@ namespace spindrift::LANES {
 
 // In two dimensions of a metre of depth.
 struct RigidBody {
-    double mass;                         // kg, 0: moves as prescribed
-    Vec3d centre, inverseInertia[3];     // m, of mass, from its middle; 1/(kg m^2) about that, row by row; in its own axes
-    real stiffness, damping, friction;   // of one ball where it touches (floating.h): N/m, N s/m, Coulomb's coefficient
-    real deepestBall;                    // m
+    double mass;                      // kg, 0: moves as prescribed
+    Vec3d centre, inverseInertia[3];  // m, of mass, from its middle; 1/(kg m^2) about that, row by
+                                      // row; in its own axes
+    real stiffness, damping,
+        friction;  // of one ball where it touches (floating.h): N/m, N s/m, Coulomb's coefficient
+    real deepestBall;  // m
 };
 
-// How near a solid that floats comes to the box or another solid, and which way the fluid would press
-// it if its pressure were the same everywhere: against what it is so near to that no fluid is between.
+// How near a solid that floats comes to the box or another solid, and which way the fluid would
+// press it if its pressure were the same everywhere: against what it is so near to that no fluid is
+// between.
 struct Gap {
-    real width = 1e30;   // m
+    real width = 1e30;  // m
     double pressed[3] = {0, 0, 0};
     HD_OUT void add(const Gap& o) {
         width = o.width < width ? o.width : width;
@@ -47,7 +50,8 @@ struct PressureAround {
 
 // The quaternion of a small turn, radians, after another one; of length 1.
 HD inline void turnBy(double (&q)[4], Vec3d angle) {
-    const double size = sqrt(dot(angle, angle)), half = 0.5 * size, share = size > 1e-12 ? sin(half) / size : 0.5, c = cos(half);
+    const double size = sqrt(dot(angle, angle)), half = 0.5 * size,
+                 share = size > 1e-12 ? sin(half) / size : 0.5, c = cos(half);
     const Vec3d a = share * angle, b{q[1], q[2], q[3]};
     const Vec3d v = c * b + q[0] * a + cross(a, b);
     const double w = c * q[0] - dot(a, b), length = sqrt(w * w + dot(v, v));
@@ -69,7 +73,8 @@ struct Turn {
 HD inline Vec3d spinOf(const RigidBody& body, const SolidMotion& m) {
     const Turn turn(m.turn);
     const Vec3d l = turn.in(m.angularMomentum);
-    return turn.out({dot(body.inverseInertia[0], l), dot(body.inverseInertia[1], l), dot(body.inverseInertia[2], l)});
+    return turn.out({dot(body.inverseInertia[0], l), dot(body.inverseInertia[1], l),
+                     dot(body.inverseInertia[2], l)});
 }
 
 // Where a solid that floats is, `ahead` seconds further on.

@@ -1,6 +1,6 @@
 #pragma once
-// What a run carries from step to step, and what its constants were derived from: another device that starts from it
-// goes on exactly.
+// What a run carries from step to step, and what its constants were derived from: another device
+// that starts from it goes on exactly.
 #include "scene/particles.h"
 #include "sim/object_state.h"
 #include "sim/solid_motion.h"
@@ -9,11 +9,13 @@
 namespace spindrift {
 
 struct RunState {
-    Placement particles;   // in the order of their ids
+    Placement particles;  // in the order of their ids
     StepState clock;
     FluidExtent start;
-    std::vector<float> densities;   // kg/m³, where they are carried; empty at the beginning, when pressures say
-    std::vector<SolidMotion> solids;   // one for each, where any floats or has been dragged; otherwise, and at the beginning, empty
+    std::vector<float>
+        densities;  // kg/m³, where they are carried; empty at the beginning, when pressures say
+    std::vector<SolidMotion> solids;  // one for each, where any floats or has been dragged;
+                                      // otherwise, and at the beginning, empty
     ObjectState objects;
 
     RunState() = default;

@@ -1,4 +1,5 @@
-// What a neighbour search keeps between passes: boxes and lists of clusters with SIMD, nothing otherwise.
+// What a neighbour search keeps between passes: boxes and lists of clusters with SIMD, nothing
+// otherwise.
 #pragma once
 
 #ifdef SPINDRIFT_SIMD
@@ -11,7 +12,9 @@ using NeighbourLists = ClusterLists;
 #include "sim/view.h"
 namespace spindrift::LANES {
 // One particle at a time walks the rows of cells: no boxes, no lists.
-struct Boxes { template <class... A> void compute(A&&...) {} };
+struct Boxes {
+    template <class... A> void compute(A&&...) {}
+};
 struct NeighbourLists {
     template <class... A> void forget(A&&...) {}
     template <class... A> void build(A&&...) {}

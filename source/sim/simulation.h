@@ -16,57 +16,68 @@
 
 namespace spindrift {
 
-// One row of the plan, in the order of the step: a pass or a term of one, "forces: laminar viscosity". It runs, or this scene
-// doesn't need it, and why not.
-struct PlanRow { std::string name, skipped; };
+// One row of the plan, in the order of the step: a pass or a term of one, "forces: laminar
+// viscosity". It runs, or this scene doesn't need it, and why not.
+struct PlanRow {
+    std::string name, skipped;
+};
 
-// Where the values of the vertices lie, a few outliers on either side left out (0.5 % each): what a colour scale needs.
-struct Range { float min, max; };
+// Where the values of the vertices lie, a few outliers on either side left out (0.5 % each): what a
+// colour scale needs.
+struct Range {
+    float min, max;
+};
 
 // What fluid does to a solid, and where it is. N and N m; in two dimensions per metre of depth.
 struct SolidMeasurement {
-    std::string name;                      // the scene's, or solid0, solid1, ...
-    Vec3d position;                        // m, of its middle, world coordinates
-    Vec3d velocity, spin;                  // m/s, of its middle; rad/s
-    Vec3d pressureForce, viscousForce;     // N
-    Vec3d torque;                          // N m, about its middle
+    std::string name;                   // the scene's, or solid0, solid1, ...
+    Vec3d position;                     // m, of its middle, world coordinates
+    Vec3d velocity, spin;               // m/s, of its middle; rad/s
+    Vec3d pressureForce, viscousForce;  // N
+    Vec3d torque;                       // N m, about its middle
 };
 
 // Where a solid is: its middle, m from the domain's lower corner, and its axes, of length 1.
-struct SolidPose { Vec3d middle, axis[3]; };
+struct SolidPose {
+    Vec3d middle, axis[3];
+};
 
-// What a run says of itself. Energies in J, momentum in kg m/s, in two dimensions per metre of depth;
-// lengths in m; sums in double precision.
+// What a run says of itself. Energies in J, momentum in kg m/s, in two dimensions per metre of
+// depth; lengths in m; sums in double precision.
 struct Measurement {
     int dimensions = 3;
-    double time = 0;                 // s
-    double dt = 0;                   // s, the last step
+    double time = 0;  // s
+    double dt = 0;    // s, the last step
     int64_t steps = 0;
-    double evaluations = 0;          // of a particle's forces, all together
-    double kineticEnergy = 0;        // sum m v^2 / 2
-    double potentialEnergy = 0;      // -sum m g.x, zero at the domain's lower corner
-    Vec3d momentum;                  // sum m v
-    Vec3d centerOfMass;              // world coordinates
-    double meanDensity = 0;          // kg/m³
-    double densityError = 0;         // mean of max(rho/rho0 - 1, 0): compression only
-    double maxDensityError = 0;      // largest rho/rho0 - 1
-    double maxSpeed = 0;             // m/s
-    double soundSpeed = 0;           // m/s, of the equation of state
-    std::vector<SolidMeasurement> solids;   // one for each of the scene's
-    bool finite = true;              // no NaN or infinity in position, velocity, density
+    double evaluations = 0;                // of a particle's forces, all together
+    double kineticEnergy = 0;              // sum m v^2 / 2
+    double potentialEnergy = 0;            // -sum m g.x, zero at the domain's lower corner
+    Vec3d momentum;                        // sum m v
+    Vec3d centerOfMass;                    // world coordinates
+    double meanDensity = 0;                // kg/m³
+    double densityError = 0;               // mean of max(rho/rho0 - 1, 0): compression only
+    double maxDensityError = 0;            // largest rho/rho0 - 1
+    double maxSpeed = 0;                   // m/s
+    double soundSpeed = 0;                 // m/s, of the equation of state
+    std::vector<SolidMeasurement> solids;  // one for each of the scene's
+    bool finite = true;                    // no NaN or infinity in position, velocity, density
 };
 
 // One particle as the picker and tests see it. Position in world coordinates.
-struct Particle { int id = -1; Vec3d position, velocity, acceleration; double density = 0, pressure = 0; };
+struct Particle {
+    int id = -1;
+    Vec3d position, velocity, acceleration;
+    double density = 0, pressure = 0;
+};
 
 // A sphere of fluid that the mouse drags along, or pulls to its middle. World coordinates; off when
 // radius is 0.
 struct Stir {
     Vec3 center;
-    float radius = 0;     // m
-    Vec3 velocity;        // m/s
-    float rate = 30;      // 1/s, at which fluid takes over its velocity
-    float pull = 0;       // 1/s: velocity towards the middle for each metre from it; negative: away
+    float radius = 0;  // m
+    Vec3 velocity;     // m/s
+    float rate = 30;   // 1/s, at which fluid takes over its velocity
+    float pull = 0;    // 1/s: velocity towards the middle for each metre from it; negative: away
     // The most that it gives to fluid, m/s.
     double speed() const { return length(velocity) + std::abs(pull) * radius; }
 };
@@ -80,28 +91,33 @@ public:
     // Takes over live knobs (schema.h says which); restart knobs must be unchanged.
     virtual void apply(const Scene&) = 0;
     virtual void stir(const Stir&) = 0;
-    // Until the next call the solid is pulled to where the mouse wants it, whatever moves it otherwise; none: let go. In local steps nobody can.
+    // Until the next call the solid is pulled to where the mouse wants it, whatever moves it
+    // otherwise; none: let go. In local steps nobody can.
     virtual void hold(const Hold&) = 0;
     // Where each of the scene's solids is now.
     virtual std::vector<SolidPose> solidPoses() = 0;
     // The solid whose surface is within a spacing of a point (m, world coordinates), or -1.
     virtual int solidAt(Vec3d point) = 0;
-    // From now on somebody else's engine moves the elastic objects (object_driver.h); null: they move by themselves again. Not owned.
+    // From now on somebody else's engine moves the elastic objects (object_driver.h); null: they
+    // move by themselves again. Not owned.
     virtual void drive(ObjectDriver*) = 0;
-    // Steps from now on end at this time (s) exactly instead of reaching beyond it, if they aren't of fixed length.
+    // Steps from now on end at this time (s) exactly instead of reaching beyond it, if they aren't
+    // of fixed length.
     virtual void stopAt(double time) = 0;
 
-    // Fluid particles have ids [0, fluidCount), boundary particles [fluidCount, fluidCount + wallCount).
+    // Fluid particles have ids [0, fluidCount), boundary particles [fluidCount, fluidCount +
+    // wallCount).
     virtual int fluidCount() const = 0;
     virtual int wallCount() const = 0;
     // The first of the boundary particles belong to solids.
     virtual int solidParticleCount() const = 0;
     // Of elastic objects, in the order of sampleObjects().
     virtual int objectParticleCount() const = 0;
-    // Fills out[id] for every fluid particle, and for the first `walls` of the boundary particles; those of objects follow. `out` must hold
-    // fluidCount + walls + objectParticleCount vertices; memory of cudaDevice() is written by a kernel, host memory of a GPU run by one
-    // copy. Returns the range of the fluid's values. Boundary value: 1 of a solid, 0 of the domain's walls, of objects
-    // 2 + their radius / that of a fluid particle.
+    // Fills out[id] for every fluid particle, and for the first `walls` of the boundary particles;
+    // those of objects follow. `out` must hold fluidCount + walls + objectParticleCount vertices;
+    // memory of cudaDevice() is written by a kernel, host memory of a GPU run by one copy. Returns
+    // the range of the fluid's values. Boundary value: 1 of a solid, 0 of the domain's walls, of
+    // objects 2 + their radius / that of a fluid particle.
     virtual Range writeVertices(VertexMemory out, ColorBy, int walls) = 0;
 
     // What it comes to, which takes a look at all particles; and the time alone.
@@ -113,19 +129,22 @@ public:
 
     // Where the run stands: makeSimulation(scene, state) goes on from there, on any device.
     virtual RunState state() = 0;
-    // Goes on from a state of this run. Particles are then in the order, and neighbour lists of the age, that a new
-    // simulation of this state has: both go on with the same bits.
+    // Goes on from a state of this run. Particles are then in the order, and neighbour lists of the
+    // age, that a new simulation of this state has: both go on with the same bits.
     virtual void restart(const RunState&) = 0;
 
-    // Time of each pass since the last resetTimes(). A CPU measures every step, a GPU the first step after resetTimes().
+    // Time of each pass since the last resetTimes(). A CPU measures every step, a GPU the first
+    // step after resetTimes().
     virtual std::vector<PassTime> times() = 0;
     virtual void resetTimes() = 0;
-    // Advances by `count` steps and returns the ms that each took: by the clock, on a GPU by events on its stream.
+    // Advances by `count` steps and returns the ms that each took: by the clock, on a GPU by events
+    // on its stream.
     virtual std::vector<double> timeSteps(int count) = 0;
     // A GPU steps while the program goes on: returns when it is done.
     virtual void wait() = 0;
 
-    // Of different fluid particles, in the last step, each once for what it gives to both; 0 where there are no lists.
+    // Of different fluid particles, in the last step, each once for what it gives to both; 0 where
+    // there are no lists.
     virtual PairsSeen pairsSeen() = 0;
     virtual std::vector<PlanRow> plan() const = 0;
     // Memory that particles, cells and neighbour lists take on the device.
@@ -136,8 +155,8 @@ public:
     virtual int cudaDevice() const = 0;
 };
 
-// Chooses the backend by scene.compute, builds the particles, or goes on from a state. Throws Error (NoDevice, Memory,
-// Scene).
+// Chooses the backend by scene.compute, builds the particles, or goes on from a state. Throws Error
+// (NoDevice, Memory, Scene).
 std::unique_ptr<Simulation> makeSimulation(const Scene&);
 std::unique_ptr<Simulation> makeSimulation(const Scene&, const RunState&);
 // Why this scene can't run on a GPU, in one line; "" when it can.

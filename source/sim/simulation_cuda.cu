@@ -7,8 +7,10 @@
 
 namespace spindrift {
 
-std::unique_ptr<Simulation> makeCudaSimulation(const Scene& scene, const RunState& state, int device) {
-    return std::make_unique<cudaLanes::SimulationOn<Cuda>>(scene, state, Cuda(device), cudaDeviceName(device) + ", CUDA, float");
+std::unique_ptr<Simulation> makeCudaSimulation(const Scene& scene, const RunState& state,
+                                               int device) {
+    return std::make_unique<cudaLanes::SimulationOn<Cuda>>(
+        scene, state, Cuda(device), cudaDeviceName(device) + ", CUDA, float");
 }
 
 }  // namespace spindrift

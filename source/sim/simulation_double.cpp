@@ -8,8 +8,10 @@
 
 namespace spindrift {
 
-std::unique_ptr<Simulation> makeDoubleSimulation(const Scene& scene, const RunState& state, int threads) {
-    return std::make_unique<doubles::SimulationOn<Omp>>(scene, state, Omp(threads, scene.compute.threads == 0), cpuName(threads, "double"));
+std::unique_ptr<Simulation> makeDoubleSimulation(const Scene& scene, const RunState& state,
+                                                 int threads) {
+    return std::make_unique<doubles::SimulationOn<Omp>>(
+        scene, state, Omp(threads, scene.compute.threads == 0), cpuName(threads, "double"));
 }
 
 }  // namespace spindrift

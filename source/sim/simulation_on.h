@@ -27,10 +27,16 @@ namespace spindrift::LANES {
 template <class Device> class SimulationOn final : public Simulation {
 public:
     SimulationOn(const Scene& scene, const RunState& state, Device device, std::string deviceName)
-        : device_(std::move(device)), deviceName_(std::move(deviceName)), scene_(scene),
-          fluidCount_(int(state.particles.positions.size())), wallCount_(int(state.particles.walls.size())),
-          bodies_(state.particles.bodies), wallsAtHome_(state.particles.walls), solidSizes_(state.particles.solidSizes),
-          extent_(state.start), grid_(makeGrid(scene, size_t(fluidCount_) + size_t(wallCount_))) {
+        : device_(std::move(device)),
+          deviceName_(std::move(deviceName)),
+          scene_(scene),
+          fluidCount_(int(state.particles.positions.size())),
+          wallCount_(int(state.particles.walls.size())),
+          bodies_(state.particles.bodies),
+          wallsAtHome_(state.particles.walls),
+          solidSizes_(state.particles.solidSizes),
+          extent_(state.start),
+          grid_(makeGrid(scene, size_t(fluidCount_) + size_t(wallCount_))) {
         if (carriesDensity(scene)) fluid_.carryDensity();
         if (shifts()) fluid_.shift(), walls_.haveDensity();
         if (scene.time.integrator == Integrator::VelocityVerlet) fluid_.keepVelocity();
@@ -38,7 +44,9 @@ public:
         walls_.upload(wallsAtHome_, {}, {}, fluidCount_);
         solids_.place(scene, wallsAtHome_, solidSizes_, fluidCount_);
         if (wallsMove()) walls_.move();
-        if (solids_.floats()) solids_.reserveLoads(walls_.slots()), floating_.bounces((fluidCount_ + clusterSize - 1) / clusterSize * clusterSize);
+        if (solids_.floats())
+            solids_.reserveLoads(walls_.slots()),
+                floating_.bounces((fluidCount_ + clusterSize - 1) / clusterSize * clusterSize);
         objects_.place(scene, solids_.floats());
         floating_.place(scene);
         if (solids_.count() > 0) fluid_.keepPlace();
@@ -54,10 +62,12 @@ public:
         fluid_.upload(state.particles.positions, state.particles.velocities, densitiesOf(state), 0);
         fillMixture();
         StepState clock = state.clock;
-        clock.speed = 0;   // a checkpoint doesn't know it
+        clock.speed = 0;  // a checkpoint doesn't know it
         device_.upload(clock_.data(), &clock, 1);
         wake();
-        if (std::any_of(state.solids.begin(), state.solids.end(), [](const SolidMotion& m) { return m.place != Vec3d{}; })) letSolidsMove();
+        if (std::any_of(state.solids.begin(), state.solids.end(),
+                        [](const SolidMotion& m) { return m.place != Vec3d{}; }))
+            letSolidsMove();
         if (solids_.moves()) walls_.upload(wallsAtHome_, {}, {}, fluidCount_);
         floating_.restart(scene_, state.solids);
         objects_.restart(scene_, state.objects);
@@ -95,9 +105,14 @@ public:
         const std::vector<SolidState> solids = solids_.download();
         const Vec3d x = point - toDouble(scene_.domain.min);
         for (size_t s = 0; s < solids.size(); ++s) {
-            const Vector<real> arm = Vector<real>{real(x.x), real(x.y), real(x.z)} - solids[s].middle;
-            const Vector<real> own{dot(arm, solids[s].axis[0]), dot(arm, solids[s].axis[1]), dot(arm, solids[s].axis[2])};
-            if (convexOf(scene_.solids[s], scene_.simulation.dimensions).nearest(Vec3d{double(own.x), double(own.y), double(own.z)}).distance < double(scene_.simulation.spacing)) return int(s);
+            const Vector<real> arm =
+                Vector<real>{real(x.x), real(x.y), real(x.z)} - solids[s].middle;
+            const Vector<real> own{dot(arm, solids[s].axis[0]), dot(arm, solids[s].axis[1]),
+                                   dot(arm, solids[s].axis[2])};
+            if (convexOf(scene_.solids[s], scene_.simulation.dimensions)
+                    .nearest(Vec3d{double(own.x), double(own.y), double(own.z)})
+                    .distance < double(scene_.simulation.spacing))
+                return int(s);
         }
         return -1;
     }
@@ -121,7 +136,9 @@ public:
     std::string deviceName() const override { return deviceName_; }
     int cudaDevice() const override { return device_.index(); }
 
-    int solidParticleCount() const override { return std::accumulate(solidSizes_.begin(), solidSizes_.end(), 0); }
+    int solidParticleCount() const override {
+        return std::accumulate(solidSizes_.begin(), solidSizes_.end(), 0);
+    }
 
     int objectParticleCount() const override { return objects_.count(); }
 
@@ -143,7 +160,13 @@ public:
     }
     RunState state() override {
         RunState s;
-        s.particles = {fluid_.positions(fluidCount_, 0), fluid_.velocities(fluidCount_, 0), wallsAtHome_, {}, solidSizes_, {}, bodies_};
+        s.particles = {fluid_.positions(fluidCount_, 0),
+                       fluid_.velocities(fluidCount_, 0),
+                       wallsAtHome_,
+                       {},
+                       solidSizes_,
+                       {},
+                       bodies_};
         s.clock = clock();
         s.start = extent_;
         s.densities = fluid_.densities(fluidCount_);
@@ -151,14 +174,17 @@ public:
         if (objects_.count() > 0) s.objects = objects_.state();
         return s;
     }
-    std::vector<Particle> particles() override { return fluid_.download(fluidCount_, scene_.domain.min); }
+    std::vector<Particle> particles() override {
+        return fluid_.download(fluidCount_, scene_.domain.min);
+    }
     Particle particle(int id) override { return fluid_.downloadOne(id, scene_.domain.min); }
 
     PairsSeen pairsSeen() override { return fluidNearFluid_.pairsSeen(); }
     std::vector<PlanRow> plan() const override { return rows_; }
     int64_t bytes() const override {
         int64_t lists = 0;
-        for (const NeighbourLists* l : {&fluidNearFluid_, &wallsNearFluid_, &fluidNearWalls_}) lists += l->bytes();
+        for (const NeighbourLists* l : {&fluidNearFluid_, &wallsNearFluid_, &fluidNearWalls_})
+            lists += l->bytes();
         return device_.bytes() + lists + objects_.listBytes() + pairSums_.bytes();
     }
 
@@ -177,7 +203,10 @@ public:
 
 private:
     using PassFunction = void (SimulationOn::*)();
-    enum class Initial : bool { No, Yes };   // also run before the first step, so that there is something to see?
+    enum class Initial : bool {
+        No,
+        Yes
+    };  // also run before the first step, so that there is something to see?
     struct Row {
         const char* name;
         PassFunction run;
@@ -191,7 +220,8 @@ private:
         CHECK(int(bodies_.size()) == fluidCount_);
         std::vector<float> ratios, viscosities;
         for (const uint16_t body : bodies_) {
-            ratios.push_back(restDensity(scene_, scene_.fluid.bodies[body]) / scene_.fluid.restDensity);
+            ratios.push_back(restDensity(scene_, scene_.fluid.bodies[body]) /
+                             scene_.fluid.restDensity);
             viscosities.push_back(viscosity(scene_, scene_.fluid.bodies[body]));
         }
         fluid_.fillMixture(ratios, viscosities);
@@ -199,7 +229,7 @@ private:
     void refresh(const Scene& scene) {
         const bool before = pairsOnce();
         scene_ = scene;
-        if (pairsOnce() != before) travel_ = 1e30;   // other lists
+        if (pairsOnce() != before) travel_ = 1e30;  // other lists
         const bool sticksNow = fluidSticks() && walls_.carryVelocity();
         withKernel(scene_.simulation.kernel, [&](auto kernel) {
             using K = decltype(kernel);
@@ -212,7 +242,8 @@ private:
         addBuffers();
         fluid_.stepLocally(hasLocalSteps());
         walls_.stepLocally(hasLocalSteps());
-        if (hasLocalSteps() && !localSteps_.used()) localSteps_.resize(grid_, real(2 * supportRadius(scene_) * (1 + scene_.compute.skin)));
+        if (hasLocalSteps() && !localSteps_.used())
+            localSteps_.resize(grid_, real(2 * supportRadius(scene_) * (1 + scene_.compute.skin)));
         // A face slides at another speed, or walls are to know which way they face.
         if (sticksNow || (wallsMove() && !solids_.moves())) solids_.placeWalls(view());
         outdateRecordings();
@@ -226,15 +257,20 @@ private:
     template <class K> void evaluateForces(Initial);
     void chooseStep();
     void moveThings(PassFunction moveSolids);
-    struct Names { const char *both, *kick, *drift; };
+    struct Names {
+        const char *both, *kick, *drift;
+    };
     template <class K, unsigned kick, unsigned drift> void advance(Names);
     template <class K> void stepLocally();
     template <class K> PassFunction wallPass() const;
     template <class K> PassFunction forcePass() const;
     template <class K> PassFunction loadPass() const;
     template <class K> PassFunction ratePass() const;
-    void addPass(const char* name, PassFunction run, Initial initial = Initial::No, const char* skipped = "") {
-        const bool said = std::any_of(rows_.begin(), rows_.end(), [&](const PlanRow& r) { return r.name == name && !r.skipped.empty(); });
+    void addPass(const char* name, PassFunction run, Initial initial = Initial::No,
+                 const char* skipped = "") {
+        const bool said = std::any_of(rows_.begin(), rows_.end(), [&](const PlanRow& r) {
+            return r.name == name && !r.skipped.empty();
+        });
         if (!said) rows_.push_back({name, skipped});
         if (!*skipped) plan_.push_back({name, run, initial});
     }
@@ -244,25 +280,33 @@ private:
             if (pairsOnce()) return &SimulationOn::template onPairs<Pass>;
         return &SimulationOn::template onFluid<Pass>;
     }
-    // Where all that pairs do they do to both: carried density changes at rates that differ, and a limit, which the classic formulation
-    // has, is one on a part of the whole.
+    // Where all that pairs do they do to both: carried density changes at rates that differ, and a
+    // limit, which the classic formulation has, is one on a part of the whole.
     bool pairsOnce() const {
-        return keepsLists && !carriesDensity(scene_) && scene_.simulation.formulation != Formulation::Classic &&
+        return keepsLists && !carriesDensity(scene_) &&
+               scene_.simulation.formulation != Formulation::Classic &&
                scene_.simulation.accelerationLimit <= 0;
     }
     bool hasLocalSteps() const { return scene_.time.mode == TimeMode::Local; }
     bool shifts() const { return shiftsParticles(scene_); }
-    bool fillsSpace() const { return scene_.simulation.formulation == Formulation::TransportVelocity; }
+    bool fillsSpace() const {
+        return scene_.simulation.formulation == Formulation::TransportVelocity;
+    }
     // Or there are terms that would ask.
     bool fluidSticks() const {
-        const bool asked = isMixture(scene_) || scene_.simulation.pressureForm == PressureForm::Mean;
+        const bool asked =
+            isMixture(scene_) || scene_.simulation.pressureForm == PressureForm::Mean;
         return wallsCarryPressure() && (asked || largestViscosity(scene_) > 0);
     }
     template <class... Ts> void noteTerms(TermList<Ts...>) {
         (rows_.push_back({std::string("forces: ") + Ts::name, Ts::skipped(scene_)}), ...);
     }
     const char* whyNoObjects() const { return objects_.count() > 0 ? "" : "there are no objects"; }
-    const char* whyNothingFloats() const { return solids_.floats() ? "" : solids_.count() > 0 ? "no solid floats" : "there are no solids"; }
+    const char* whyNothingFloats() const {
+        return solids_.floats()      ? ""
+               : solids_.count() > 0 ? "no solid floats"
+                                     : "there are no solids";
+    }
     const char* whyNoWallPressure() const {
         if (wallCount_ == 0) return "there are no boundary particles";
         return wallsCarryPressure() ? "" : "walls have no pressure in the classic formulation";
@@ -289,7 +333,10 @@ private:
         if (objects_.isDriven() && objects_.exchange(clock().time)) outdateRecordings();
     }
     // There is nothing to be done but to let time pass. (A GPU would have to be asked.)
-    bool allRest() { return !Device::recordsSteps && hasLocalSteps() && clock().allRest && stir_.radius <= 0 && !solids_.moves(); }
+    bool allRest() {
+        return !Device::recordsSteps && hasLocalSteps() && clock().allRest && stir_.radius <= 0 &&
+               !solids_.moves();
+    }
     // One recording for each side of the particles' buffers; walls are sorted only when they move.
     void stepFromRecording() {
         auto& recording = recordings_[4 * objects_.side() + 2 * walls_.side() + fluid_.side()];
@@ -311,11 +358,15 @@ private:
     std::vector<float> densitiesOf(const RunState& state) const {
         if (!carriesDensity(scene_) || !state.densities.empty()) return state.densities;
         std::vector<float> densities = state.particles.densities;
-        for (size_t i = 0; i < densities.size() && !bodies_.empty(); ++i)   // those of the scene's fluid
-            densities[i] *= scene_.fluid.restDensity / restDensity(scene_, scene_.fluid.bodies[bodies_[i]]);
+        for (size_t i = 0; i < densities.size() && !bodies_.empty();
+             ++i)  // those of the scene's fluid
+            densities[i] *=
+                scene_.fluid.restDensity / restDensity(scene_, scene_.fluid.bodies[bodies_[i]]);
         for (size_t i = 0; i < state.particles.pressures.size(); ++i) {
-            const double power = std::max(1 + double(state.particles.pressures[i]) / constants_.stiffness, 0.1);
-            const float density = float(constants_.restDensity * std::pow(power, 1.0 / constants_.gamma));
+            const double power =
+                std::max(1 + double(state.particles.pressures[i]) / constants_.stiffness, 0.1);
+            const float density =
+                float(constants_.restDensity * std::pow(power, 1.0 / constants_.gamma));
             if (i == densities.size()) densities.push_back(density);
             if (densities[i] == 0) densities[i] = density;
         }
@@ -326,15 +377,19 @@ private:
     PassTime* timeOf(const char* name) {
         for (PassTime& t : times_)
             if (t.name == name) return &t;
-        times_.reserve(32);   // rows point into it
+        times_.reserve(32);  // rows point into it
         CHECK(times_.size() < times_.capacity());
         return &times_.emplace_back(PassTime{name, 0, 0});
     }
 
-    bool wallsCarryPressure() const { return wallCount_ > 0 && scene_.simulation.formulation != Formulation::Classic; }
+    bool wallsCarryPressure() const {
+        return wallCount_ > 0 && scene_.simulation.formulation != Formulation::Classic;
+    }
     // s, that a step can take.
     double longestStep() const {
-        return constants_.fixedStep > 0 ? double(constants_.fixedStep) : double(min(acousticStep(constants_, 0), constants_.maxStep));
+        return constants_.fixedStep > 0
+                   ? double(constants_.fixedStep)
+                   : double(min(acousticStep(constants_, 0), constants_.maxStep));
     }
     // Those that stood still until now as well: their particles are sorted and placed from here on.
     void letSolidsMove() {
@@ -344,19 +399,24 @@ private:
         walls_.move();
         refresh(scene_);
     }
-    bool wallsMove() const { return solids_.moves() || (wallCount_ > 0 && scene_.walls.movingFace != Face::None); }
+    bool wallsMove() const {
+        return solids_.moves() || (wallCount_ > 0 && scene_.walls.movingFace != Face::None);
+    }
     template <class Pass> void findLoads() { solids_.template findLoads<Pass>(view()); }
     const RigidBody* whatFloats() const { return solids_.floats() ? floating_.bodies() : nullptr; }
     void touchObjects() {
         const View v = view();
         objects_.touch(v, whatFloats(), floating_.springs());
-        if (solids_.floats() && !objects_.isDriven()) floating_.addTouches(scene_, objects_.count(), [&](int solid) { return objects_.pressesOn(v, solid); });
+        if (solids_.floats() && !objects_.isDriven())
+            floating_.addTouches(scene_, objects_.count(),
+                                 [&](int solid) { return objects_.pressesOn(v, solid); });
     }
     void moveObjects() { objects_.move(view(), whatFloats()); }
     void findSolidForces() {
         const View v = view();
         findAllLoads(v);
-        floating_.findForces(scene_, v, solids_.home(), [&](int solid) { return solids_.sumOf(v, solid); });
+        floating_.findForces(scene_, v, solids_.home(),
+                             [&](int solid) { return solids_.sumOf(v, solid); });
     }
     void findAllLoads(const View& v) {
         (this->*findLoads_)();
@@ -367,26 +427,31 @@ private:
         floating_.move(view(), particleMass(scene_), hold_, 0.5 * halvesOfKick, drifts ? 1 : 0);
     }
     template <class Pass> void onFluid() { device_.forEach(fluid_.slots(), Pass{view()}); }
-    template <class Pass> void onPairs() {
-        pairSums_.run(device_, fluidNearFluid_, Pass{view()});
-    }
+    template <class Pass> void onPairs() { pairSums_.run(device_, fluidNearFluid_, Pass{view()}); }
     template <class Pass> void onWalls() { device_.forEach(walls_.slots(), Pass{view()}); }
     // Order and lists hold until two particles may have come closer by the skin.
     bool nothingMovedFar() const { return keepsLists && travel_ < skin_ / 2; }
-    // Where few are awake lists are short and the sort, which knows no rest, is what costs: both cost the same with a skin that grows as
-    // 1/sqrt(share awake). Blocks are large enough for 0.4 support radii.
-    // Where lists would not outlive a step, by what the last one `moved` (unless nobody knows), they reach no further than they must.
+    // Where few are awake lists are short and the sort, which knows no rest, is what costs: both
+    // cost the same with a skin that grows as 1/sqrt(share awake). Blocks are large enough for 0.4
+    // support radii. Where lists would not outlive a step, by what the last one `moved` (unless
+    // nobody knows), they reach no further than they must.
     float chooseSkin(double moved) {
-        const float asked = scene_.compute.skin, share = hasLocalSteps() ? float(std::max(clock().awake, 1e-3)) : 1;
-        const float skin = supportRadius(scene_) * std::max(asked, std::min(asked / std::sqrt(share), 0.4f));
+        const float asked = scene_.compute.skin,
+                    share = hasLocalSteps() ? float(std::max(clock().awake, 1e-3)) : 1;
+        const float skin =
+            supportRadius(scene_) * std::max(asked, std::min(asked / std::sqrt(share), 0.4f));
         return travel_ < 1e29 && moved >= skin / 2 ? 0 : skin;
     }
     void moveSolids() { placeSolids(0); }
-    void moveSolidsHalfWay() { placeSolids(0.5); }   // the clock is at the step's end, what floats at its beginning
+    void moveSolidsHalfWay() {
+        placeSolids(0.5);
+    }  // the clock is at the step's end, what floats at its beginning
     void keepOutOfSolids() {
         if (solids_.moves()) solids_.sweep(clock_.data(), floating_.bodies(), floating_.motions());
         const bool floats = solids_.floats();
-        device_.forEach(fluid_.slots(), KeepOutOfSolids{view(), floats ? floating_.bounces(fluid_.slots()) : Bounces{}});
+        device_.forEach(
+            fluid_.slots(),
+            KeepOutOfSolids{view(), floats ? floating_.bounces(fluid_.slots()) : Bounces{}});
         if (floats) floating_.takeMomentum(scene_, view());
     }
     void placeSolids(double halfWay) {
@@ -399,17 +464,18 @@ private:
         if constexpr (keepsLists) skin_ = chooseSkin(moved);
         fluid_.sort(grid_);
         boxes_.compute(device_, fluid_.view());
-        if (hasLocalSteps()) onFluid<ApplyEquationOfState>();   // of those who aren't due
+        if (hasLocalSteps()) onFluid<ApplyEquationOfState>();  // of those who aren't due
         if (solids_.moves()) {
             walls_.sort(grid_);
-            solids_.placeWalls(view());   // all but their places, which the sort took along
+            solids_.placeWalls(view());  // all but their places, which the sort took along
             wallBoxes_.compute(device_, walls_.view());
         }
         if (objects_.count() > 0) {
             objects_.sort(grid_);
             objects_.forgetLists(fluid_.view());
         }
-        for (NeighbourLists* lists : {&fluidNearFluid_, &wallsNearFluid_}) lists->forget(fluid_.view());
+        for (NeighbourLists* lists : {&fluidNearFluid_, &wallsNearFluid_})
+            lists->forget(fluid_.view());
         fluidNearWalls_.forget(walls_.view());
         travel_ = travelBefore_ = 0;
     }
@@ -417,21 +483,27 @@ private:
     void findNeighbours() {
         const View v = view();
         const float reach = supportRadius(scene_) + skin_;
-        fluidNearFluid_.build(device_, grid_, reach, boxes_, v.fluid.due, boxes_, fluid_.cellStart(), pairsOnce());
-        wallsNearFluid_.build(device_, grid_, reach, boxes_, v.fluid.due, wallBoxes_, walls_.cellStart());
+        fluidNearFluid_.build(device_, grid_, reach, boxes_, v.fluid.due, boxes_,
+                              fluid_.cellStart(), pairsOnce());
+        wallsNearFluid_.build(device_, grid_, reach, boxes_, v.fluid.due, wallBoxes_,
+                              walls_.cellStart());
         if (objects_.count() > 0) objects_.findNeighbours(grid_, skin_, boxes_, fluid_.cellStart());
         if (!wallsCarryPressure()) return;
         const uint8_t* due = solids_.count() > 0 ? nullptr : v.walls.due;
         fluidNearWalls_.build(device_, grid_, reach, wallBoxes_, due, boxes_, fluid_.cellStart());
     }
     template <bool volume> void findExtremes() {
-        device_.reduce(fluid_.slots(), FindExtremes<volume>{fluid_.view(), constants_.restDensity}, extremes_.data());
+        device_.reduce(fluid_.slots(), FindExtremes<volume>{fluid_.view(), constants_.restDensity},
+                       extremes_.data());
         if (objects_.count() > 0) objects_.findSpeed(clock_.data(), extremes_.data());
     }
     void chooseTimeStep() {
         device_.forEach(1, ChooseTimeStep{view(), extremes_.data()});
-        const double share = scene_.time.integrator == Integrator::PredictorCorrector ? 0.5 : scene_.time.integrator == Integrator::Split ? 0 : 1;
-        if constexpr (keepsLists) travel_ += share * clock_.data()->dt * largestSpeed(clock_.data()->dt);
+        const double share = scene_.time.integrator == Integrator::PredictorCorrector ? 0.5
+                             : scene_.time.integrator == Integrator::Split            ? 0
+                                                                                      : 1;
+        if constexpr (keepsLists)
+            travel_ += share * clock_.data()->dt * largestSpeed(clock_.data()->dt);
     }
     void beginStep() { device_.forEach(1, BeginStep{view()}); }
     void findWhoRests() {
@@ -439,7 +511,7 @@ private:
         device_.forEach(int(localSteps_.blocks()), RestBlocks{view()});
     }
     void findWhoIsDue() {
-        allDue_ = !Device::recordsSteps && clock().allDue;   // (a recording can't look)
+        allDue_ = !Device::recordsSteps && clock().allDue;  // (a recording can't look)
         if (allDue_) return;
         device_.forEach(fluid_.slots() / clusterSize, FindDueClusters{view()});
         device_.forEach(int(localSteps_.blocks()), FindDueBlocks{view()});
@@ -448,7 +520,8 @@ private:
         device_.forEach(int(localSteps_.blocks()), SpreadDue{view()});
     }
     void chooseMoment() {
-        device_.reduce(fluid_.slots(), FindMotion{fluid_.view(), clock_.data()}, localSteps_.motion());
+        device_.reduce(fluid_.slots(), FindMotion{fluid_.view(), clock_.data()},
+                       localSteps_.motion());
         device_.forEach(1, ChooseMoment{view(), localSteps_.motion(), fluidCount_});
         if constexpr (keepsLists) {
             const double solids = solids_.largestSpeed();
@@ -463,9 +536,9 @@ private:
         device_.upload(clock_.data(), &awake, 1);
         device_.forEach(fluid_.slots(), WakeParticles{fluid_.view()});
     }
-    // From the middle of the step to its end, where the middle's accelerations lead: dt/2 v + dt^2/2 a, and a shift that may
-    // turn round.
-    // Of the whole step, which before the pressure nobody knew.
+    // From the middle of the step to its end, where the middle's accelerations lead: dt/2 v +
+    // dt^2/2 a, and a shift that may turn round. Of the whole step, which before the pressure
+    // nobody knew.
     void countPressure() {
         findExtremes<false>();
         if constexpr (keepsLists) travel_ += clock_.data()->dt * largestSpeed(clock_.data()->dt);
@@ -484,7 +557,8 @@ private:
         const Extremes& e = *extremes_.data();
         const double most = std::max<double>(std::sqrt(e.speed2), stir_.speed());
         const double own = most + dt * std::sqrt(e.acceleration2);
-        return std::max(shifts() ? 1.5 * own : own, solids_.largestSpeed());   // the shift is at most half as fast
+        return std::max(shifts() ? 1.5 * own : own,
+                        solids_.largestSpeed());  // the shift is at most half as fast
     }
 
     // Sorted once where they never move; their masses stay.
@@ -492,7 +566,8 @@ private:
         walls_.sort(grid_);
         wallBoxes_.compute(device_, walls_.view());
         wallsNearWalls_.forget(walls_.view());
-        wallsNearWalls_.build(device_, grid_, supportRadius(scene_), wallBoxes_, nullptr, wallBoxes_, walls_.cellStart());
+        wallsNearWalls_.build(device_, grid_, supportRadius(scene_), wallBoxes_, nullptr,
+                              wallBoxes_, walls_.cellStart());
         withKernel(scene_.simulation.kernel, [&](auto kernel) {
             device_.forEach(walls_.slots(), ComputeWallMass<decltype(kernel)>{view()});
         });
@@ -503,12 +578,18 @@ private:
     }
 
     View view() {
-        View v{fluid_.view(), walls_.view(), solids_.data(), solids_.count(),
+        View v{fluid_.view(),
+               walls_.view(),
+               solids_.data(),
+               solids_.count(),
                {fluidNearFluid_.data(), fluid_.cellStart(), fluid_.view().position},
                {wallsNearFluid_.data(), walls_.cellStart(), walls_.view().position},
                {fluidNearWalls_.data(), fluid_.cellStart(), fluid_.view().position},
                {wallsNearWalls_.data(), walls_.cellStart(), walls_.view().position},
-               grid_, constants_, clock_.data(), localSteps_.view()};
+               grid_,
+               constants_,
+               clock_.data(),
+               localSteps_.view()};
         if (allDue_) v.fluid.due = v.walls.due = nullptr;
         v.c.stirCenter = toVector(stir_.center - scene_.domain.min);
         v.c.stirVelocity = toVector(stir_.velocity);
@@ -519,15 +600,18 @@ private:
     Range writeVertices(Vertex* out, ColorBy by, int walls);
     Range writeSurface(Vertex* out);
     template <class Value> Range write(const Particles& p, Vertex* out);
-    void addBuffers() { fluid_.addForces(pairsOnce() && mixes(scene_), scene_.fluid.surfaceTension > 0 || showsSurface_); }
+    void addBuffers() {
+        fluid_.addForces(pairsOnce() && mixes(scene_),
+                         scene_.fluid.surfaceTension > 0 || showsSurface_);
+    }
 
     Device device_;
     std::string deviceName_;
     Scene scene_;
     Stir stir_;
     int fluidCount_, wallCount_;
-    std::vector<uint16_t> bodies_;    // of a mixture: which one each particle is of
-    std::vector<Vec3> wallsAtHome_;   // as in Placement
+    std::vector<uint16_t> bodies_;   // of a mixture: which one each particle is of
+    std::vector<Vec3> wallsAtHome_;  // as in Placement
     std::vector<int> solidSizes_;
     FluidExtent extent_;
     Grid grid_;
@@ -539,23 +623,23 @@ private:
     Solids<Device> solids_{device_};
     Floating<Device> floating_{device_};
     Objects<Device> objects_{device_};
-    Hold hold_;                 // target relative to the domain's lower corner
+    Hold hold_;  // target relative to the domain's lower corner
     PassFunction findLoads_ = nullptr;
     Buffer<StepState, Device> clock_{device_};
     Buffer<Extremes, Device> extremes_{device_};
     LocalSteps<Device> localSteps_{device_};
-    bool showsSurface_ = false; // somebody has asked
-    bool allDue_ = false;       // at this moment: flags are needless then
-    Buffer<Vertex, Device> staging_{device_};   // for vertices that the host is to have
+    bool showsSurface_ = false;                // somebody has asked
+    bool allDue_ = false;                      // at this moment: flags are needless then
+    Buffer<Vertex, Device> staging_{device_};  // for vertices that the host is to have
     bool measureNext_ = true;
     typename Device::Recording recordings_[8];
-    int sortsInStep_ = 1;       // each exchanges the particles' two sides of buffers
+    int sortsInStep_ = 1;  // each exchanges the particles' two sides of buffers
     static constexpr bool keepsLists = clusterSize > 1;
     static constexpr const char* allAlike = "all take the same steps (time.mode)";
     static constexpr const char* noLists = "rows of cells are walked instead of lists";
-    double travel_ = 1e30;      // m, bound of any particle's way since the lists were built
-    double travelBefore_ = 1e30;   // the same when sorting was last considered
-    float skin_ = 0;            // m, how much further than the support these reach
+    double travel_ = 1e30;        // m, bound of any particle's way since the lists were built
+    double travelBefore_ = 1e30;  // the same when sorting was last considered
+    float skin_ = 0;              // m, how much further than the support these reach
     Boxes boxes_, wallBoxes_;
     NeighbourLists fluidNearFluid_, wallsNearFluid_, fluidNearWalls_, wallsNearWalls_;
     PairSums pairSums_;

@@ -1,5 +1,5 @@
-// The simulation on the host's SIMD lanes. Included by simulation_avx512.cpp and its like, each for the instruction set that it
-// calls SPINDRIFT_TARGET, and by nothing else.
+// The simulation on the host's SIMD lanes. Included by simulation_avx512.cpp and its like, each for
+// the instruction set that it calls SPINDRIFT_TARGET, and by nothing else.
 #pragma once
 #define HWY_BASELINE_TARGETS SPINDRIFT_TARGET
 #include <hwy/highway.h>
@@ -23,8 +23,11 @@ HWY_BEFORE_NAMESPACE();
 #include "sim/simulation_on.h"
 namespace spindrift::LANES {
 
-std::unique_ptr<Simulation> makeSimulationOn(const Scene& scene, const RunState& state, int threads, const std::string& instructionSet) {
-    return std::make_unique<SimulationOn<Omp>>(scene, state, Omp(threads, scene.compute.threads == 0), cpuName(threads, instructionSet + ", float"));
+std::unique_ptr<Simulation> makeSimulationOn(const Scene& scene, const RunState& state, int threads,
+                                             const std::string& instructionSet) {
+    return std::make_unique<SimulationOn<Omp>>(scene, state,
+                                               Omp(threads, scene.compute.threads == 0),
+                                               cpuName(threads, instructionSet + ", float"));
 }
 
 }  // namespace spindrift::LANES

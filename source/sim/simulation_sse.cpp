@@ -3,7 +3,8 @@
 
 namespace spindrift {
 
-std::unique_ptr<Simulation> makeSseSimulation(const Scene& scene, const RunState& state, int threads) {
+std::unique_ptr<Simulation> makeSseSimulation(const Scene& scene, const RunState& state,
+                                              int threads) {
     return LANES::makeSimulationOn(scene, state, threads, "SSE");
 }
 

@@ -1,4 +1,5 @@
-// Solids in the fluid: where they are, what their particles know of them, and what fluid does to them.
+// Solids in the fluid: where they are, what their particles know of them, and what fluid does to
+// them.
 #pragma once
 
 #include "core/error.h"
@@ -19,27 +20,34 @@ template <class R> HD inline Vector<R> turned(const SolidState& s, Vector<R> a) 
     return a.x * wide(s.axis[0]) + a.y * wide(s.axis[1]) + a.z * wide(s.axis[2]);
 }
 
-// Between keys [first, end): on straight lines, at rest before and after. m and radians, and those per second.
-struct KeyedMotion { Vec3d offset, velocity; double turn, turnRate; };
+// Between keys [first, end): on straight lines, at rest before and after. m and radians, and those
+// per second.
+struct KeyedMotion {
+    Vec3d offset, velocity;
+    double turn, turnRate;
+};
 HD inline KeyedMotion motionAt(const MotionKey* keys, int first, int end, double time) {
     int next = first;
     while (next < end && keys[next].time <= time) ++next;
     const bool rests = next == first || next == end;
-    const MotionKey &from = keys[next == first ? next : next - 1], &to = keys[next == end ? next - 1 : next];
-    const double perSecond = rests ? 0 : 1 / (to.time - from.time), share = (time - from.time) * perSecond;
+    const MotionKey &from = keys[next == first ? next : next - 1],
+                    &to = keys[next == end ? next - 1 : next];
+    const double perSecond = rests ? 0 : 1 / (to.time - from.time),
+                 share = (time - from.time) * perSecond;
     const Vec3d way = to.offset - from.offset;
-    return {from.offset + share * way, perSecond * way, from.turn + share * (to.turn - from.turn), (to.turn - from.turn) * perSecond};
+    return {from.offset + share * way, perSecond * way, from.turn + share * (to.turn - from.turn),
+            (to.turn - from.turn) * perSecond};
 }
 
-// Where a solid is now and how it moves: on straight lines between its keys. It does not accelerate but for an instant at each key. What floats or
-// was dragged is where its motion says.
+// Where a solid is now and how it moves: on straight lines between its keys. It does not accelerate
+// but for an instant at each key. What floats or was dragged is where its motion says.
 struct MoveSolids {
     using Index = int;
     SolidState* solids;
     const MotionKey* keys;
     const StepState* state;
-    double stepsBack;   // from the clock's time
-    double ahead;       // steps, from the motions
+    double stepsBack;  // from the clock's time
+    double ahead;      // steps, from the motions
     const RigidBody* bodies;
     const SolidMotion* motions;
     HD void operator()(int i) const {
@@ -56,13 +64,16 @@ struct MoveSolids {
     HD static void addDragged(SolidState& s, const SolidMotion& m, double ahead) {
         const Vec3d place = m.place + ahead * m.velocity;
         s.middle = s.middle + Vector<real>{real(place.x), real(place.y), real(place.z)};
-        s.velocity = s.velocity + Vector<real>{real(m.velocity.x), real(m.velocity.y), real(m.velocity.z)};
+        s.velocity =
+            s.velocity + Vector<real>{real(m.velocity.x), real(m.velocity.y), real(m.velocity.z)};
         s.speed = real(sqrt(dot(m.velocity, m.velocity)));
     }
     HD static void turn(SolidState& s, double angle, double rate) {
         const int k = s.spinAxis, y = (k + 1) % 3, z = (k + 2) % 3;
         const real cosine = real(cos(angle)), sine = real(sin(angle));
-        auto set = [](Vector<real>& v, int component, real value) { (component == 0 ? v.x : component == 1 ? v.y : v.z) = value; };
+        auto set = [](Vector<real>& v, int component, real value) {
+            (component == 0 ? v.x : component == 1 ? v.y : v.z) = value;
+        };
         for (int a = 0; a < 3; ++a) s.axis[a] = {0, 0, 0};
         s.spin = {0, 0, 0};
         set(s.axis[k], k, 1), set(s.spin, k, real(rate));
@@ -88,29 +99,36 @@ struct MeasureTurn {
     const StepState* state;
     HD void operator()(int i) const {
         SolidState& s = solids[i];
-        auto m = [&](int row, int column) LANE_CALL { return double(dot(s.axisBefore[row], s.axis[column])); };
+        auto m = [&](int row, int column)
+                     LANE_CALL { return double(dot(s.axisBefore[row], s.axis[column])); };
         double axis[3] = {m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1)};
         double length = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
-        const double angle = atan2(length, m(0, 0) + m(1, 1) + m(2, 2) - 1), pi = 3.14159265358979323846;
-        const double asked[3] = {state->dt * double(dot(s.spin, s.axis[0])), state->dt * double(dot(s.spin, s.axis[1])), state->dt * double(dot(s.spin, s.axis[2]))};
-        if (length < 1e-5) {   // by nearly nothing, or by half a turn
+        const double angle = atan2(length, m(0, 0) + m(1, 1) + m(2, 2) - 1),
+                     pi = 3.14159265358979323846;
+        const double asked[3] = {state->dt * double(dot(s.spin, s.axis[0])),
+                                 state->dt * double(dot(s.spin, s.axis[1])),
+                                 state->dt * double(dot(s.spin, s.axis[2]))};
+        if (length < 1e-5) {  // by nearly nothing, or by half a turn
             for (int k = 0; k < 3; ++k) axis[k] = asked[k];
             length = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
         }
         s.turn = {0, 0, 0};
         if (!(length > 0)) return;
-        const double along = (asked[0] * axis[0] + asked[1] * axis[1] + asked[2] * axis[2]) / length;
+        const double along =
+            (asked[0] * axis[0] + asked[1] * axis[1] + asked[2] * axis[2]) / length;
         const double all = (angle + 2 * pi * floor((along - angle) / (2 * pi) + 0.5)) / length;
         s.turn = {real(all * axis[0]), real(all * axis[1]), real(all * axis[2])};
     }
 };
 
-// Convex::nearest, for lanes: signed distance of p from a solid's surface in its own axes, and the outward normal there.
+// Convex::nearest, for lanes: signed distance of p from a solid's surface in its own axes, and the
+// outward normal there.
 template <class R> HD inline R nearest(const SolidState& s, Vector<R> p, Vector<R>& n) {
     R most = real(-1e30);
     auto take = [&](R distance, Vector<R> normal) LANE_CALL {
         const auto nearer = distance > most;
-        n = {select(nearer, normal.x, n.x), select(nearer, normal.y, n.y), select(nearer, normal.z, n.z)};
+        n = {select(nearer, normal.x, n.x), select(nearer, normal.y, n.y),
+             select(nearer, normal.z, n.z)};
         most = max(most, distance);
     };
     for (int k = 0; k < s.planes; ++k) {
@@ -130,41 +148,50 @@ HD inline real surface(const SolidState& s, Vector<real> p, Vector<real>& n) {
     if (!s.field) return nearest(s, p, n);
     const Vector<real> at = s.nodesPerMetre * (p - s.fieldLow);
     auto cell = [](real a, int nodes) LANE_CALL { return Grid::clamped(a, nodes - 1); };
-    auto share = [](real a, int cell) LANE_CALL { return min(max(a - real(cell), real(0)), real(1)); };
+    auto share = [](real a, int cell)
+                     LANE_CALL { return min(max(a - real(cell), real(0)), real(1)); };
     const int i = cell(at.x, s.nodes.x), j = cell(at.y, s.nodes.y), k = cell(at.z, s.nodes.z);
     const real x = share(at.x, i), y = share(at.y, j), z = share(at.z, k);
-    const real* f = s.field + (size_t(k) * size_t(s.nodes.y) + size_t(j)) * size_t(s.nodes.x) + size_t(i);
+    const real* f =
+        s.field + (size_t(k) * size_t(s.nodes.y) + size_t(j)) * size_t(s.nodes.x) + size_t(i);
     const size_t up = size_t(s.nodes.x), back = up * size_t(s.nodes.y);
     auto between = [](real a, real b, real share) LANE_CALL { return a + share * (b - a); };
-    const real f00 = between(f[0], f[1], x), f10 = between(f[up], f[up + 1], x), f01 = between(f[back], f[back + 1], x),
-               f11 = between(f[back + up], f[back + up + 1], x), low = between(f00, f10, y), high = between(f01, f11, y);
-    const real alongX = between(between(f[1] - f[0], f[up + 1] - f[up], y), between(f[back + 1] - f[back], f[back + up + 1] - f[back + up], y), z);
+    const real f00 = between(f[0], f[1], x), f10 = between(f[up], f[up + 1], x),
+               f01 = between(f[back], f[back + 1], x),
+               f11 = between(f[back + up], f[back + up + 1], x), low = between(f00, f10, y),
+               high = between(f01, f11, y);
+    const real alongX =
+        between(between(f[1] - f[0], f[up + 1] - f[up], y),
+                between(f[back + 1] - f[back], f[back + up + 1] - f[back + up], y), z);
     const Vector<real> slope{alongX, between(f10 - f00, f11 - f01, z), high - low};
     const real steepness = squareRoot(dot(slope, slope));
     n = steepness > 0 ? (1 / steepness) * slope : Vector<real>{0, 1, 0};
     return between(low, high, z);
 }
 
-// What boundary particles have from the start, in the order of their ids. With solids only: the domain's walls are where they are.
+// What boundary particles have from the start, in the order of their ids. With solids only: the
+// domain's walls are where they are.
 struct WallsAtHome {
     int firstId;
-    const int* solid;       // -1: of the domain's walls
-    VectorField position;   // m
-    ScalarField mass;       // 0: follows from neighbours
-    VectorField area;       // m^2 / kg of a fluid particle, of the surface of what floats
-    Vector<real> size;      // m, the domain's
+    const int* solid;      // -1: of the domain's walls
+    VectorField position;  // m
+    ScalarField mass;      // 0: follows from neighbours
+    VectorField area;      // m^2 / kg of a fluid particle, of the surface of what floats
+    Vector<real> size;     // m, the domain's
     HD int solidOf(int id) const { return solid ? solid[id - firstId] : -1; }
     // Whether a cluster has any particle of a solid.
     HD bool hasSolid(const Particles& walls, int cluster) const {
         for (int k = 0; k < clusterSize; ++k)
-            if (const int id = walls.id[cluster * clusterSize + k]; id >= 0 && solidOf(id) >= 0) return true;
+            if (const int id = walls.id[cluster * clusterSize + k]; id >= 0 && solidOf(id) >= 0)
+                return true;
         return false;
     }
 };
 
 // The image of x in the domain.
 HD inline Vector<real> intoDomain(const Constants& c, Vector<real> x) {
-    return {x.x - c.period.x * roundDown(x.x * c.inversePeriod.x), x.y - c.period.y * roundDown(x.y * c.inversePeriod.y),
+    return {x.x - c.period.x * roundDown(x.x * c.inversePeriod.x),
+            x.y - c.period.y * roundDown(x.y * c.inversePeriod.y),
             x.z - c.period.z * roundDown(x.z * c.inversePeriod.z)};
 }
 
@@ -183,7 +210,8 @@ struct PlaceWalls {
     HD void placeOfDomain(int i) const {
         const Vector<real> x = load(v.walls.position, i);
         auto beyond = [](real at, real end) LANE_CALL { return at - max(min(at, end), real(0)); };
-        finish(i, {beyond(x.x, home.size.x), beyond(x.y, home.size.y), beyond(x.z, home.size.z)}, wallVelocity(v.c, x));
+        finish(i, {beyond(x.x, home.size.x), beyond(x.y, home.size.y), beyond(x.z, home.size.z)},
+               wallVelocity(v.c, x));
     }
     HD void placeOfSolid(int i, int k, const SolidState& s) const {
         const Vector<real> own = load(home.position, k) - s.home, arm = turned(s, own);
@@ -198,7 +226,8 @@ struct PlaceWalls {
     }
 };
 
-// Masses that follow from neighbours do so at the start; a solid that comes near a wall later doesn't change them.
+// Masses that follow from neighbours do so at the start; a solid that comes near a wall later
+// doesn't change them.
 struct KeepWallMass {
     using Index = int;
     Particles walls;
@@ -210,8 +239,8 @@ struct KeepWallMass {
     }
 };
 
-// What fluid does to solids' particles: the terms of ComputeForces with their signs changed. m/s² per fluid particle's mass; of pressure, and
-// of the others.
+// What fluid does to solids' particles: the terms of ComputeForces with their signs changed. m/s²
+// per fluid particle's mass; of pressure, and of the others.
 template <class Kernel, class Terms> struct ComputeWallLoads;
 template <class Kernel, class... Terms> struct ComputeWallLoads<Kernel, TermList<Terms...>> {
     using Index = Group;
@@ -219,8 +248,8 @@ template <class Kernel, class... Terms> struct ComputeWallLoads<Kernel, TermList
     static constexpr unsigned needs = TermList<Terms...>::needs;
     View v;
     VectorField pressure, other;
-    // What pressure would be if p / rho^2 of both added up to 1, and to that of fluid at rest where it
-    // is none at the boundary particle.
+    // What pressure would be if p / rho^2 of both added up to 1, and to that of fluid at rest where
+    // it is none at the boundary particle.
     VectorField seen, seenAtRest;
     WallsAtHome home;
     HD void operator()(Group b) const {
@@ -246,11 +275,13 @@ template <class Kernel, class... Terms> struct ComputeWallLoads<Kernel, TermList
     }
 };
 
-// Sums over the particles of one solid; times a fluid particle's mass they are N and N m, about its middle.
+// Sums over the particles of one solid; times a fluid particle's mass they are N and N m, about its
+// middle.
 struct SolidLoad {
     double pressure[3] = {0, 0, 0}, other[3] = {0, 0, 0}, torque[3] = {0, 0, 0};
     HD_OUT void add(const SolidLoad& o) {
-        for (int k = 0; k < 3; ++k) pressure[k] += o.pressure[k], other[k] += o.other[k], torque[k] += o.torque[k];
+        for (int k = 0; k < 3; ++k)
+            pressure[k] += o.pressure[k], other[k] += o.other[k], torque[k] += o.torque[k];
     }
 };
 struct SumSolidLoad {
@@ -267,16 +298,16 @@ struct SumSolidLoad {
     }
 };
 
-// Where what floats comes near the box and other solids are gaps that no particle of fluid fits into.
-// Without the fluid's pressure there it would be pressed against them, the more the deeper it is. So
-// near them the pressure that fluid at rest would have acts on its closed surface, and what particles
-// of fluid press with counts from there: what they don't, the ground takes.
+// Where what floats comes near the box and other solids are gaps that no particle of fluid fits
+// into. Without the fluid's pressure there it would be pressed against them, the more the deeper it
+// is. So near them the pressure that fluid at rest would have acts on its closed surface, and what
+// particles of fluid press with counts from there: what they don't, the ground takes.
 struct BesideGround {
     View v;
     WallsAtHome home;
     const RigidBody* bodies;
     int solid;
-    VectorField pressure, seen, seenAtRest;   // as ComputeWallLoads found them
+    VectorField pressure, seen, seenAtRest;  // as ComputeWallLoads found them
 
     HD bool has(int i) const { return v.walls.id[i] >= 0 && home.solidOf(v.walls.id[i]) == solid; }
     HD real spacing() const { return bodies[solid].deepestBall / real(0.75); }
@@ -293,15 +324,15 @@ struct BesideGround {
         if (dot(area, area) == 0) return real(1e30);
         const SolidState& s = v.solids[solid];
         Vector<real> normal{0, 0, 0};
-        const real depth = -surface(s, load(home.position, v.walls.id[i] - home.firstId) - s.home, normal);
+        const real depth =
+            -surface(s, load(home.position, v.walls.id[i] - home.firstId) - s.home, normal);
         return min(toBox(x), toSolids(x)) - depth;
     }
     HD real toBox(Vector<real> x) const {
         const Constants& c = v.c;
         real nearest = 1e30;
-        auto side = [&](real at, real low, real high) LANE_CALL {
-            nearest = min(nearest, min(at - low, high - at));
-        };
+        auto side = [&](real at, real low, real high)
+                        LANE_CALL { nearest = min(nearest, min(at - low, high - at)); };
         if (c.period.x <= 0) side(x.x, c.low.x, c.high.x);
         if (c.period.y <= 0) side(x.y, c.low.y, c.high.y);
         if (c.period.z <= 0 && c.dimensions == 3) side(x.z, c.low.z, c.high.z);
@@ -370,14 +401,16 @@ inline Vector<real> toReal(Vec3d a) { return {real(a.x), real(a.y), real(a.z)}; 
 inline SolidState solidAtHome(const Scene& scene, const Solid& solid) {
     const Convex shape = convexOf(solid, scene.simulation.dimensions);
     Vec3d middle = shape.middle - toDouble(scene.domain.min);
-    if (scene.simulation.dimensions == 2) middle.z = 0.5 * double(scene.domain.max.z - scene.domain.min.z);
+    if (scene.simulation.dimensions == 2)
+        middle.z = 0.5 * double(scene.domain.max.z - scene.domain.min.z);
     SolidState s{};
     s.home = s.middle = s.middleBefore = toReal(middle);
     s.axis[0] = {1, 0, 0}, s.axis[1] = {0, 1, 0}, s.axis[2] = {0, 0, 1};
     for (int k = 0; k < 3; ++k) s.axisBefore[k] = s.axis[k];
     s.spinAxis = int(solid.spinAxis);
     s.planes = shape.planes;
-    for (int k = 0; k < shape.planes; ++k) s.normal[k] = toReal(shape.normal[k]), s.offset[k] = real(shape.offset[k]);
+    for (int k = 0; k < shape.planes; ++k)
+        s.normal[k] = toReal(shape.normal[k]), s.offset[k] = real(shape.offset[k]);
     s.radius = real(shape.radius), s.across = toReal(shape.across);
     s.reach = solid.shape == Shape::Plane ? real(1e9) : real(reachOf(solid));
     return s;
@@ -389,7 +422,8 @@ public:
     explicit Solids(Device& device) : device_(device) {}
 
     // `walls` as in Placement, ids from firstId on.
-    void place(const Scene& scene, const std::vector<Vec3>& walls, const std::vector<int>& sizes, int firstId) {
+    void place(const Scene& scene, const std::vector<Vec3>& walls, const std::vector<int>& sizes,
+               int firstId) {
         std::vector<SolidState> states;
         std::vector<MotionKey> keys;
         for (const Solid& solid : scene.solids) {
@@ -401,8 +435,10 @@ public:
             speed_ = std::max(speed_, spindrift::largestSpeed(solid));
         }
         count_ = int(states.size()), firstId_ = firstId;
-        moves_ = std::any_of(scene.solids.begin(), scene.solids.end(), [](const Solid& s) { return s.moves(); });
-        floats_ = std::any_of(scene.solids.begin(), scene.solids.end(), [](const Solid& s) { return s.floats(); });
+        moves_ = std::any_of(scene.solids.begin(), scene.solids.end(),
+                             [](const Solid& s) { return s.moves(); });
+        floats_ = std::any_of(scene.solids.begin(), scene.solids.end(),
+                              [](const Solid& s) { return s.floats(); });
         fillFields(scene, states);
         fill(states_, states), fill(keys_, keys);
         const Vec3 size = scene.domain.max - scene.domain.min;
@@ -412,7 +448,7 @@ public:
     int count() const { return count_; }
     bool moves() const { return moves_; }
     bool floats() const { return floats_; }
-    void letMove() { moves_ = true; }   // from now on the mouse may drag them
+    void letMove() { moves_ = true; }  // from now on the mouse may drag them
     // Of the host's solids, m/s.
     double largestSpeed() const {
         double most = speed_;
@@ -421,8 +457,10 @@ public:
     }
     SolidState* data() { return states_.data(); }
 
-    void move(const StepState* state, double stepsBack, double ahead, const RigidBody* bodies, const SolidMotion* motions) {
-        device_.forEach(count_, MoveSolids{states_.data(), keys_.data(), state, stepsBack, ahead, bodies, motions});
+    void move(const StepState* state, double stepsBack, double ahead, const RigidBody* bodies,
+              const SolidMotion* motions) {
+        device_.forEach(count_, MoveSolids{states_.data(), keys_.data(), state, stepsBack, ahead,
+                                           bodies, motions});
     }
     // To the end of a step, which the solids remember to have begun where they were then.
     void sweep(const StepState* state, const RigidBody* bodies, const SolidMotion* motions) {
@@ -432,17 +470,23 @@ public:
         device_.forEach(count_, MeasureTurn{states_.data(), state});
     }
     void placeWalls(const View& v) { device_.forEach(v.walls.slots, PlaceWalls{v, home()}); }
-    void keepMasses(const Particles& walls) { device_.forEach(walls.slots, KeepWallMass{walls, home()}); }
+    void keepMasses(const Particles& walls) {
+        device_.forEach(walls.slots, KeepWallMass{walls, home()});
+    }
 
     // What fluid does to each of their particles, and the sum over those of one solid.
     template <class Pass> void findLoads(const View& v) {
         reserveLoads(v.walls.slots);
-        device_.forEach(v.walls.slots, Pass{v, {pressureLoad_.data()}, {otherLoad_.data()}, {seen_.data()},
-                                                  {seenAtRest_.data()}, home()});
+        device_.forEach(v.walls.slots, Pass{v,
+                                            {pressureLoad_.data()},
+                                            {otherLoad_.data()},
+                                            {seen_.data()},
+                                            {seenAtRest_.data()},
+                                            home()});
     }
     void pressFromGaps(const View& v, const RigidBody* bodies, int solid) {
-        const BesideGround beside{v, home(), bodies, solid, {pressureLoad_.data()}, {seen_.data()},
-                                  {seenAtRest_.data()}};
+        const BesideGround beside{
+            v, home(), bodies, solid, {pressureLoad_.data()}, {seen_.data()}, {seenAtRest_.data()}};
         device_.reduce(v.walls.slots, FindGap{beside}, gap_.data());
         device_.reduce(v.walls.slots, FindPressureAround{beside, gap_.data()}, around_.data());
         device_.forEach(v.walls.slots, PressFromGaps{beside, gap_.data(), around_.data()});
@@ -452,7 +496,8 @@ public:
     }
     // A recorded step can't make room.
     void reserveLoads(int slots) {
-        for (auto* field : {&pressureLoad_, &otherLoad_, &seen_, &seenAtRest_}) field->resize(vectorSize(slots));
+        for (auto* field : {&pressureLoad_, &otherLoad_, &seen_, &seenAtRest_})
+            field->resize(vectorSize(slots));
         gap_.resize(1), around_.resize(1);
     }
     std::vector<SolidState> download() {
@@ -462,7 +507,8 @@ public:
     }
 
     WallsAtHome home() {
-        return {firstId_, solidOf_.data(), {position_.data()}, {mass_.data()}, {area_.data()}, size_};
+        return {firstId_,       solidOf_.data(), {position_.data()},
+                {mass_.data()}, {area_.data()},  size_};
     }
 
 private:
@@ -477,28 +523,35 @@ private:
             begin.push_back(all.size());
             const Convex shape = convexOf(scene.solids[k], scene.simulation.dimensions);
             if (!shape.mesh) continue;
-            const DistanceField field = shape.mesh->field(shape.mesh->fieldSpacing(scene.simulation.spacing / shape.scale));
-            for (float distance : field.distances) all.push_back(real(shape.scale * double(distance)));
+            const DistanceField field =
+                shape.mesh->field(shape.mesh->fieldSpacing(scene.simulation.spacing / shape.scale));
+            for (float distance : field.distances)
+                all.push_back(real(shape.scale * double(distance)));
             states[k].nodes = field.nodes;
-            states[k].fieldLow = toReal(shape.scale * field.low), states[k].nodesPerMetre = real(1 / (shape.scale * field.spacing));
+            states[k].fieldLow = toReal(shape.scale * field.low),
+            states[k].nodesPerMetre = real(1 / (shape.scale * field.spacing));
         }
         fill(fields_, all);
         for (size_t k = 0; k < states.size(); ++k)
             if (states[k].nodes.x > 0) states[k].field = fields_.data() + begin[k];
     }
-    void placeParticles(const Scene& scene, const std::vector<Vec3>& walls, const std::vector<int>& sizes) {
+    void placeParticles(const Scene& scene, const std::vector<Vec3>& walls,
+                        const std::vector<int>& sizes) {
         const size_t slots = (walls.size() + clusterSize - 1) / clusterSize * clusterSize;
         std::vector<int> solidOf(slots, -1);
         std::vector<real> mass(slots), area(floats_ ? size_t(vectorSize(int(slots))) : 0);
         // Volumes are of cells a spacing wide, masses of the fluid's particles.
-        const double dx = scene.simulation.spacing, cell = std::pow(dx, scene.simulation.dimensions);
+        const double dx = scene.simulation.spacing,
+                     cell = std::pow(dx, scene.simulation.dimensions);
         const float share = hasOwnVolume(scene) ? float(cell / particleVolume(scene)) : 1;
         size_t end = 0;
         for (size_t s = 0; s < scene.solids.size(); ++s) {
             const SolidSample sample = sampleSolid(scene, scene.solids[s]);
             const std::vector<float>& volumes = sample.volumes;
             if (sizes.size() <= s || volumes.size() != size_t(sizes[s]))
-                throw Error(Exit::Scene, "solids: the particles of this run are of another version of the program; start the scene again");
+                throw Error(Exit::Scene,
+                            "solids: the particles of this run are of another version of the "
+                            "program; start the scene again");
             std::transform(volumes.begin(), volumes.end(), mass.begin() + long(end),
                            [&](float v) { return real(v * share); });
             std::fill_n(solidOf.begin() + long(end), sizes[s], int(s));
@@ -510,11 +563,12 @@ private:
             for (int k = 0; k < 3; ++k) x[vectorOffset(int(i), k)] = walls[i][k];
         fill(solidOf_, solidOf), fill(position_, x), fill(mass_, mass), fill(area_, area);
     }
-    static void fillAreas(const Scene& scene, const Solid& solid, const SolidSample& sample, int first,
-                          std::vector<real>& out) {
+    static void fillAreas(const Scene& scene, const Solid& solid, const SolidSample& sample,
+                          int first, std::vector<real>& out) {
         const double perMass = 1 / particleMass(scene);
         for (const Vec3d& area : surfaceAreas(scene, solid, sample)) {
-            for (int k = 0; k < 3; ++k) out[size_t(vectorOffset(first, k))] = real(perMass * area[k]);
+            for (int k = 0; k < 3; ++k)
+                out[size_t(vectorOffset(first, k))] = real(perMass * area[k]);
             ++first;
         }
     }
@@ -522,13 +576,14 @@ private:
     Device& device_;
     int count_ = 0, firstId_ = 0;
     bool moves_ = false, floats_ = false;
-    double speed_ = 0;   // m/s
+    double speed_ = 0;  // m/s
     Vector<real> size_{};
     Buffer<SolidState, Device> states_{device_};
     Buffer<MotionKey, Device> keys_{device_};
-    Buffer<real, Device> fields_{device_};   // of meshes, one after the other
+    Buffer<real, Device> fields_{device_};  // of meshes, one after the other
     Buffer<int, Device> solidOf_{device_};
-    Buffer<real, Device> position_{device_}, mass_{device_}, area_{device_}, pressureLoad_{device_}, otherLoad_{device_}, seen_{device_}, seenAtRest_{device_};
+    Buffer<real, Device> position_{device_}, mass_{device_}, area_{device_}, pressureLoad_{device_},
+        otherLoad_{device_}, seen_{device_}, seenAtRest_{device_};
     Buffer<Gap, Device> gap_{device_};
     Buffer<PressureAround, Device> around_{device_};
 };

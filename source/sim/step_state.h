@@ -5,12 +5,12 @@
 namespace spindrift {
 
 struct StepState {
-    double time = 0;     // s
-    double dt = 0;       // s, of the last step
+    double time = 0;  // s
+    double dt = 0;    // s, of the last step
     int64_t steps = 0;
-    double speed = 0;    // m/s, the largest before the last step
-    double volume = 1;   // of all particles then, share of their volume at rest density
-    double stop = 1e300; // s: a step ends here
+    double speed = 0;     // m/s, the largest before the last step
+    double volume = 1;    // of all particles then, share of their volume at rest density
+    double stop = 1e300;  // s: a step ends here
     // With local steps `dt` is the time to the next moment at which a particle is due.
     double longest = 0;      // s, the step of calm fluid and of the whole
     int moment = 0;          // where in it the run stands, in 64ths; outside of step() 0

@@ -10,51 +10,66 @@
 
 namespace spindrift::LANES {
 
-// Particles of one kind, sorted by cell. A slot with id -1 holds nobody: it fills a row of cells up to whole
-// clusters and lies far outside, so that no pair with it counts.
+// Particles of one kind, sorted by cell. A slot with id -1 holds nobody: it fills a row of cells up
+// to whole clusters and lies far outside, so that no pair with it counts.
 struct Particles {
     int slots;
     int* id;
-    VectorField position;          // m, relative to the domain's lower corner
-    VectorField velocity;          // m/s; of boundary particles the one that makes fluid stick to them, where it does
-    VectorField acceleration;      // m/s²
-    VectorField addedForce;        // sums of pairs for what comes on top, in units of gradientScale; where there is any
-    VectorField normal;            // of the surface, inward, of length 1, or 0 where there is none; with surface tension
-    ScalarField normalLength;      // 1/m, |sum_j V grad W|
-    ScalarField density;           // kg/m³; of boundary particles only where density gradients are wanted
-    ScalarField inverseDensity;    // m^3/kg
-    ScalarField pressureTerm;      // p / rho^2
-    ScalarField mass;              // boundary particles only (Akinci 2012): m_b / m
-    VectorField outward;           // m, boundary particles only: from the nearest point of their surface, where fluid sticks to it
-    VectorField ownVelocity;       // m/s, boundary particles only: of the wall itself, where any moves
-    ScalarField densityRate;       // kg/(m^3 s), where density is carried
-    VectorField shiftVelocity;     // m/s, where particles are shifted: how much faster than the fluid they move,
-    VectorField shiftAcceleration; // m/s², and what a particle's velocity changes by for being elsewhere
-    VectorField keptPosition;      // m, what the integrator keeps while forces are evaluated elsewhere; with solids, after the drift, where its way began
-    VectorField keptVelocity;      // m/s
-    ScalarField keptDensity;       // kg/m³
-    ScalarField massRatio;         // of a mixture: rest density / the scene's. Density and what follows from it are those of the same particle of the
-                                   // scene's fluid, which has its volume and pressure; forces are divided by the ratio
-    ScalarField viscosity;         // of a mixture, Pa s
-    ScalarField level;             // local steps only: how short a particle's own step is, longest / 2^level, or how it rests
-    uint8_t* due;                  // local steps only: per cluster, whether it is evaluated now
+    VectorField position;      // m, relative to the domain's lower corner
+    VectorField velocity;      // m/s; of boundary particles the one that makes fluid stick to them,
+                               // where it does
+    VectorField acceleration;  // m/s²
+    VectorField addedForce;    // sums of pairs for what comes on top, in units of gradientScale;
+                               // where there is any
+    VectorField normal;  // of the surface, inward, of length 1, or 0 where there is none; with
+                         // surface tension
+    ScalarField normalLength;  // 1/m, |sum_j V grad W|
+    ScalarField density;  // kg/m³; of boundary particles only where density gradients are wanted
+    ScalarField inverseDensity;  // m^3/kg
+    ScalarField pressureTerm;    // p / rho^2
+    ScalarField mass;            // boundary particles only (Akinci 2012): m_b / m
+    VectorField outward;  // m, boundary particles only: from the nearest point of their surface,
+                          // where fluid sticks to it
+    VectorField ownVelocity;    // m/s, boundary particles only: of the wall itself, where any moves
+    ScalarField densityRate;    // kg/(m^3 s), where density is carried
+    VectorField shiftVelocity;  // m/s, where particles are shifted: how much faster than the fluid
+                                // they move,
+    VectorField
+        shiftAcceleration;  // m/s², and what a particle's velocity changes by for being elsewhere
+    VectorField keptPosition;  // m, what the integrator keeps while forces are evaluated elsewhere;
+                               // with solids, after the drift, where its way began
+    VectorField keptVelocity;  // m/s
+    ScalarField keptDensity;   // kg/m³
+    ScalarField massRatio;     // of a mixture: rest density / the scene's. Density and what follows
+                            // from it are those of the same particle of the scene's fluid, which
+                            // has its volume and pressure; forces are divided by the ratio
+    ScalarField viscosity;  // of a mixture, Pa s
+    ScalarField level;  // local steps only: how short a particle's own step is, longest / 2^level,
+                        // or how it rests
+    uint8_t* due;       // local steps only: per cluster, whether it is evaluated now
 };
 
 // The level of who rests.
 inline constexpr real resting = -1;
-// Of clusters. Resting: all of it. Near: not due itself, but maybe a neighbour of who is. Watched: near and resting, so that its density goes with its neighbours' places
-// as a wall's would; with a pressure of its own it would push them without an end.
+// Of clusters. Resting: all of it. Near: not due itself, but maybe a neighbour of who is. Watched:
+// near and resting, so that its density goes with its neighbours' places as a wall's would; with a
+// pressure of its own it would push them without an end.
 enum : uint8_t { Resting, NotDue, NearDue, Watched, Due };
 
-template <uint8_t from = Due, class I> HD inline bool isDue(const Particles& p, I i) { return !p.due || p.due[firstOf(i) / clusterSize] >= from; }
+template <uint8_t from = Due, class I> HD inline bool isDue(const Particles& p, I i) {
+    return !p.due || p.due[firstOf(i) / clusterSize] >= from;
+}
 
-// Cells are thin along x and a few particles wide along y and z: a row of cells is one stretch of memory.
+// Cells are thin along x and a few particles wide along y and z: a row of cells is one stretch of
+// memory.
 struct Grid {
-    Vector<real> low;              // m, corner of the first cell
-    Vector<real> perMetre;         // cells per metre
+    Vector<real> low;       // m, corner of the first cell
+    Vector<real> perMetre;  // cells per metre
     Int3 cells;
-    Int3 wraps;                    // 1 along a periodic axis
-    HD static int clamped(real cell, int n) { return !(cell > 0) ? 0 : cell >= real(n) ? n - 1 : int(cell); }
+    Int3 wraps;  // 1 along a periodic axis
+    HD static int clamped(real cell, int n) {
+        return !(cell > 0) ? 0 : cell >= real(n) ? n - 1 : int(cell);
+    }
     // Along a periodic axis an index beyond the grid is an image of the cell at wrapped(index).
     HD static int index(real cell, int n, int wraps) {
         if (!wraps || !(cell > real(-n) && cell < real(2 * n))) return clamped(cell, n);
@@ -65,17 +80,21 @@ struct Grid {
     HD int rowY(real y) const { return index((y - low.y) * perMetre.y, cells.y, wraps.y); }
     HD int rowZ(real z) const { return index((z - low.z) * perMetre.z, cells.z, wraps.z); }
     // Of the row at (y, z), which may be an image, the number of its first cell.
-    HD int row(int y, int z) const { return (wrapped(z, cells.z) * cells.y + wrapped(y, cells.y)) * cells.x; }
+    HD int row(int y, int z) const {
+        return (wrapped(z, cells.z) * cells.y + wrapped(y, cells.y)) * cells.x;
+    }
     HD int cell(Vector<real> x) const {
-        return (clamped((x.z - low.z) * perMetre.z, cells.z) * cells.y + clamped((x.y - low.y) * perMetre.y, cells.y)) * cells.x +
+        return (clamped((x.z - low.z) * perMetre.z, cells.z) * cells.y +
+                clamped((x.y - low.y) * perMetre.y, cells.y)) *
+                   cells.x +
                clamped((x.x - low.x) * perMetre.x, cells.x);
     }
 };
 
-// Calls f(first, last) for the stretches of cells of one row that [first, last] stands for: two of them where it reaches over
-// the end of a periodic row, never a cell twice.
+// Calls f(first, last) for the stretches of cells of one row that [first, last] stands for: two of
+// them where it reaches over the end of a periodic row, never a cell twice.
 template <class F> HD inline void forStretches(int first, int last, int n, const F& f) {
-    int beyond = -1;   // where the stretch ends that goes on from cell 0
+    int beyond = -1;  // where the stretch ends that goes on from cell 0
     if (last - first + 1 >= n) first = 0, last = n - 1;
     if (first < 0) first += n, last += n;
     if (last >= n) beyond = last - n, last = n - 1;
@@ -83,8 +102,8 @@ template <class F> HD inline void forStretches(int first, int last, int n, const
     for (int k = beyond < 0; k < 2; ++k) f(k ? first : 0, k ? last : beyond);
 }
 
-// The clusters of another set that may hold neighbours of one cluster (SIMD lanes only): all that are near enough for the
-// life of the list, and of these the ones with a neighbour in this step.
+// The clusters of another set that may hold neighbours of one cluster (SIMD lanes only): all that
+// are near enough for the life of the list, and of these the ones with a neighbour in this step.
 struct ClusterList {
     const uint32_t* clusters;
     uint32_t* pruned;
@@ -93,88 +112,95 @@ struct ClusterList {
 
 // Where the neighbours of one set's particles are found in another set (or in their own).
 struct Neighbourhood {
-    ClusterList* lists;            // per cluster of the set; null without SIMD
-    const int* cellStart;          // of the other set; slots [cellStart[c], cellStart[c+1]) are in cell c
-    VectorField position;          // of the other set
+    ClusterList* lists;    // per cluster of the set; null without SIMD
+    const int* cellStart;  // of the other set; slots [cellStart[c], cellStart[c+1]) are in cell c
+    VectorField position;  // of the other set
 };
 
 // Cubes of cells, for local steps. What is known of each:
 struct Blocks {
-    Int3 count, size;              // along each axis, in cells; the last ones are larger
-    real* speed2;                  // (m/s)^2, mean at the last decision of who rests
-    int* calm;                     // decisions for which nothing has happened around
-    int* nap;                      // and after how many it wakes for a look
-    uint8_t *due, *near;           // whether it has a particle that is due; what its clusters are that have none
+    Int3 count, size;  // along each axis, in cells; the last ones are larger
+    real* speed2;      // (m/s)^2, mean at the last decision of who rests
+    int* calm;         // decisions for which nothing has happened around
+    int* nap;          // and after how many it wakes for a look
+    uint8_t *due,
+        *near;  // whether it has a particle that is due; what its clusters are that have none
 };
 
 struct Constants {
-    real support, support2, inverseSupport2;      // R, R^2, 1/R^2
-    real kernelScale, gradientScale;              // m norm/R^3, m gradientNorm/R^5, m the mass in sums
-    real selfWeight;                              // 1: a particle counts itself in its density; 0: not
-    real wallFactor, wallMassFloor;               // boundary mass m_b = wallFactor rho0 / sum W; floor in units of m
-    real restDensity;                             // kg/m³
-    real stiffness; int gamma;                    // p = p0 + k ((rho/rho0)^gamma - 1), Pa
-    real backgroundPressure;                      // p0, Pa
-    real leastPressure;                           // Pa
-    real diffusion;                               // 2 delta h c, m^2/s, of carried density
-    real shifting;                                // shift velocity per largest speed, m
-    real shiftWeight;                             // 1 / w at the distance of neighbours on the lattice
+    real support, support2, inverseSupport2;  // R, R^2, 1/R^2
+    real kernelScale, gradientScale;          // m norm/R^3, m gradientNorm/R^5, m the mass in sums
+    real selfWeight;                          // 1: a particle counts itself in its density; 0: not
+    real wallFactor,
+        wallMassFloor;  // boundary mass m_b = wallFactor rho0 / sum W; floor in units of m
+    real restDensity;   // kg/m³
+    real stiffness;
+    int gamma;                // p = p0 + k ((rho/rho0)^gamma - 1), Pa
+    real backgroundPressure;  // p0, Pa
+    real leastPressure;       // Pa
+    real diffusion;           // 2 delta h c, m^2/s, of carried density
+    real shifting;            // shift velocity per largest speed, m
+    real shiftWeight;         // 1 / w at the distance of neighbours on the lattice
     int dimensions;
-    real flatMoment;                              // what makes moments in two dimensions invertible: 1, otherwise 0
-    real laminar;                                 // 2 mu, Pa s, for the kernel's own sums of Laplacians
-    real artificial;                              // alpha c h / 2, m^2/s
-    real classicViscosity;                        // nu m / (rho0 pi R^5) in units of gradientScale
-    real surfaceTension;                          // 2 sigma / rho0, m³/s^2
-    real normalScale;                             // m gradientNorm / (rho0 R^5) of MeanKernel
-    real leastCompany;                            // sum of MeanKernel::w, below which there is but spray
-    real leastNormal;                             // 1/m: shorter ones belong to no surface
-    real velocityTransfer;                        // rate kernelScale / 2 in units of gradientScale
-    real buoyancy;                                // b kernelScale / rho0^2 in units of gradientScale
-    real dissipation, airDrag;                    // 1/s, 1/m
-    Vector<real> wind;                            // m/s
-    real aloneDensity;                            // of a particle without neighbours / rho0
-    real eta2;                                    // 0.01 h^2, keeps 1/d^2 finite
-    real accelerationLimit;                       // m/s²
-    Vector<real> gravity;                         // m/s²
-    real gravityRate;                             // 1/s, how fast it grows from 0; 0: it is there at once
-    real centralPull;                             // 1/s^2, Omega^2 of -Omega^2 (x - center)
-    Vector<real> center;                          // m
-    Vector<real> slidesBelow, slidesAbove;        // m: boundary particles below or above these slide with
-    Vector<real> slideVelocity;                   // m/s
-    real solidSpeed;                              // m/s, the most that any solid reaches
-    real gap;                                     // m: who was stopped by a solid is so far off, which is more than rounding
-    Vector<real> low, high;                       // m, the box that positions stay in
-    Vector<real> period, inversePeriod;           // m, 1/m, of periodic axes; 0 for the others
-    bool periodic;                                // any of them
+    real flatMoment;            // what makes moments in two dimensions invertible: 1, otherwise 0
+    real laminar;               // 2 mu, Pa s, for the kernel's own sums of Laplacians
+    real artificial;            // alpha c h / 2, m^2/s
+    real classicViscosity;      // nu m / (rho0 pi R^5) in units of gradientScale
+    real surfaceTension;        // 2 sigma / rho0, m³/s^2
+    real normalScale;           // m gradientNorm / (rho0 R^5) of MeanKernel
+    real leastCompany;          // sum of MeanKernel::w, below which there is but spray
+    real leastNormal;           // 1/m: shorter ones belong to no surface
+    real velocityTransfer;      // rate kernelScale / 2 in units of gradientScale
+    real buoyancy;              // b kernelScale / rho0^2 in units of gradientScale
+    real dissipation, airDrag;  // 1/s, 1/m
+    Vector<real> wind;          // m/s
+    real aloneDensity;          // of a particle without neighbours / rho0
+    real eta2;                  // 0.01 h^2, keeps 1/d^2 finite
+    real accelerationLimit;     // m/s²
+    Vector<real> gravity;       // m/s²
+    real gravityRate;           // 1/s, how fast it grows from 0; 0: it is there at once
+    real centralPull;           // 1/s^2, Omega^2 of -Omega^2 (x - center)
+    Vector<real> center;        // m
+    Vector<real> slidesBelow, slidesAbove;  // m: boundary particles below or above these slide with
+    Vector<real> slideVelocity;             // m/s
+    real solidSpeed;                        // m/s, the most that any solid reaches
+    real gap;  // m: who was stopped by a solid is so far off, which is more than rounding
+    Vector<real> low, high;              // m, the box that positions stay in
+    Vector<real> period, inversePeriod;  // m, 1/m, of periodic axes; 0 for the others
+    bool periodic;                       // any of them
     real restitution, friction;
-    real soundSpeed, fastestSound;                // m/s, of the scene's rest density, and of the lightest fluid
+    real soundSpeed, fastestSound;  // m/s, of the scene's rest density, and of the lightest fluid
     real cfl, fixedStep;
-    real maxStep;                                 // s, what is asked for and what forces but pressure allow
-    real restSpeed;                               // below that share of the speed of sound fluid may rest, 0: nothing rests
+    real maxStep;    // s, what is asked for and what forces but pressure allow
+    real restSpeed;  // below that share of the speed of sound fluid may rest, 0: nothing rests
     Vector<real> stirCenter, stirVelocity;
-    real stirRadius, stirRate, stirPull;          // m, 1/s, 1/s (Stir)
+    real stirRadius, stirRate, stirPull;  // m, 1/s, 1/s (Stir)
 };
 
-// A solid now. Its shape is convex (scene/convex.h), in its own axes and relative to its middle; that of a mesh is a field of distances in its bounding box.
+// A solid now. Its shape is convex (scene/convex.h), in its own axes and relative to its middle;
+// that of a mesh is a field of distances in its bounding box.
 struct SolidState {
-    Vector<real> home, middle;     // m, relative to the domain's lower corner: at its place in the scene, now
-    Vector<real> velocity, spin;   // m/s, rad/s
-    Vector<real> axis[3];          // its own axes in space
-    int firstKey, endKey;          // of its motion
-    bool steady;                   // which goes on and on
+    Vector<real> home,
+        middle;  // m, relative to the domain's lower corner: at its place in the scene, now
+    Vector<real> velocity, spin;  // m/s, rad/s
+    Vector<real> axis[3];         // its own axes in space
+    int firstKey, endKey;         // of its motion
+    bool steady;                  // which goes on and on
     int spinAxis;
     int planes;
     Vector<real> normal[Convex::mostPlanes];
     real offset[Convex::mostPlanes];
     real radius;
     Vector<real> across;
-    real reach;                    // m, from its middle to its farthest point
-    Vector<real> centreOfMass;     // m, of one that floats
-    real speed;                    // m/s, the most of its points, of one that floats or is dragged; otherwise 0: the scene knows it
-    Vector<real> middleBefore, axisBefore[3];   // where the step began, for collisions,
-    Vector<real> turn;             // rad, and how it has turned since, in its own axes
-    const real* field;             // m from the surface at the nodes of a lattice, x first; null: there is none
-    Vector<real> fieldLow;         // m, its first node
+    real reach;                 // m, from its middle to its farthest point
+    Vector<real> centreOfMass;  // m, of one that floats
+    real speed;  // m/s, the most of its points, of one that floats or is dragged; otherwise 0: the
+                 // scene knows it
+    Vector<real> middleBefore, axisBefore[3];  // where the step began, for collisions,
+    Vector<real> turn;                         // rad, and how it has turned since, in its own axes
+    const real*
+        field;  // m from the surface at the nodes of a lattice, x first; null: there is none
+    Vector<real> fieldLow;  // m, its first node
     real nodesPerMetre;
     Int3 nodes;
 };
@@ -190,22 +216,28 @@ struct View {
     Blocks blocks;
 };
 
-// m/s², at the run's time, which is on the device: a recorded step needs no new constants while it grows. Passes ask outside of their loops: a branch among
-// their sums would keep the compiler from fusing multiplications with additions, and change bits.
+// m/s², at the run's time, which is on the device: a recorded step needs no new constants while it
+// grows. Passes ask outside of their loops: a branch among their sums would keep the compiler from
+// fusing multiplications with additions, and change bits.
 HD inline Vector<real> gravityNow(const View& v) {
     if (v.c.gravityRate <= 0) return v.c.gravity;
-    const real s = min(real(v.state->time) * v.c.gravityRate, real(1)), share = s * s * (real(3) - real(2) * s);
+    const real s = min(real(v.state->time) * v.c.gravityRate, real(1)),
+               share = s * s * (real(3) - real(2) * s);
     return {share * v.c.gravity.x, share * v.c.gravity.y, share * v.c.gravity.z};
 }
 
 // What pulls at every particle, m/s².
-template <class R> HD inline Vector<R> bodyForce(const Constants& c, Vector<real> gravityNow, Vector<R> x) {
-    const Vector<R> gravity{gravityNow.x, gravityNow.y, gravityNow.z}, center{c.center.x, c.center.y, c.center.z};
+template <class R>
+HD inline Vector<R> bodyForce(const Constants& c, Vector<real> gravityNow, Vector<R> x) {
+    const Vector<R> gravity{gravityNow.x, gravityNow.y, gravityNow.z},
+        center{c.center.x, c.center.y, c.center.z};
     return subtractScaled(gravity, R(c.centralPull), x - center);
 }
 
 // What fluids weigh in comparison to the scene's.
-template <class I> HD inline Real<I> massRatio(const Particles& fluid, I i) { return fluid.massRatio.data ? load(fluid.massRatio, i) : Real<I>(1); }
+template <class I> HD inline Real<I> massRatio(const Particles& fluid, I i) {
+    return fluid.massRatio.data ? load(fluid.massRatio, i) : Real<I>(1);
+}
 
 // Of a boundary particle's wall itself, m/s.
 template <class I> HD inline Vector<Real<I>> ownVelocity(const Particles& walls, I b) {
@@ -220,7 +252,8 @@ template <class R> HD inline Vector<R> wallVelocity(const Constants& c, Vector<R
         return max(select(at < R(below), one, zero), select(at > R(above), one, zero));
     };
     const R share = max(slides(x.x, c.slidesBelow.x, c.slidesAbove.x),
-                        max(slides(x.y, c.slidesBelow.y, c.slidesAbove.y), slides(x.z, c.slidesBelow.z, c.slidesAbove.z)));
+                        max(slides(x.y, c.slidesBelow.y, c.slidesAbove.y),
+                            slides(x.z, c.slidesBelow.z, c.slidesAbove.z)));
     return share * Vector<R>{c.slideVelocity.x, c.slideVelocity.y, c.slideVelocity.z};
 }
 

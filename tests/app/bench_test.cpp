@@ -12,12 +12,14 @@ namespace spindrift {
 namespace {
 
 nlohmann::json row(double ms, double forces) {
-    return {{"case", "dam"}, {"machine", "here"}, {"device", "CPU"}, {"particles", 10}, {"ms_per_step", ms},
-            {"ms_per_pass", {{"forces", forces}, {"sort", 0.1}}}};
+    return {{"case", "dam"},     {"machine", "here"},
+            {"device", "CPU"},   {"particles", 10},
+            {"ms_per_step", ms}, {"ms_per_pass", {{"forces", forces}, {"sort", 0.1}}}};
 }
 
 struct BenchBaselineTest : testing::Test {
-    std::string path = (std::filesystem::temp_directory_path() / "spindrift-baseline-test.json").string();
+    std::string path =
+        (std::filesystem::temp_directory_path() / "spindrift-baseline-test.json").string();
     BenchBaselineTest() { std::filesystem::remove(path); }
     ~BenchBaselineTest() override { std::filesystem::remove(path); }
 };
@@ -32,7 +34,8 @@ TEST_F(BenchBaselineTest, SaysWhatGotSlower) {
     const BenchBaseline baseline(path);
     EXPECT_EQ(baseline.complaint(row(1.09, 0.6)), "");
     EXPECT_EQ(baseline.complaint(row(0.5, 0.2)), "");
-    EXPECT_EQ(baseline.complaint(row(1.5, 1)), "dam: 1.500 ms a step, 1.50 times the baseline's (forces 0.500 -> 1.000)");
+    EXPECT_EQ(baseline.complaint(row(1.5, 1)),
+              "dam: 1.500 ms a step, 1.50 times the baseline's (forces 0.500 -> 1.000)");
     for (const char* key : {"case", "machine", "device"}) {
         nlohmann::json other = row(1.5, 1);
         other[key] = "another";
@@ -45,7 +48,8 @@ TEST_F(BenchBaselineTest, RefusesOtherFiles) {
         std::ofstream(path) << text;
         EXPECT_THROW(BenchBaseline{path}, Error) << text;
     }
-    std::ofstream(path) << "[1, {\"case\": 3}, {\"case\": \"dam\", \"machine\": \"here\", \"device\": \"CPU\", \"particles\": 10}]";
+    std::ofstream(path) << "[1, {\"case\": 3}, {\"case\": \"dam\", \"machine\": \"here\", "
+                           "\"device\": \"CPU\", \"particles\": 10}]";
     EXPECT_EQ(BenchBaseline(path).ratio(row(1, 1)), 0) << "rows of other kinds are no rows";
 }
 

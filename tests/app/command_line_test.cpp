@@ -37,9 +37,11 @@ TEST_F(CommandLine, MistakesInTheArguments) {
     expectMistake(Small + "--set fluid.viscosity=nan", Exit::Usage, "expected a number in Pa s");
     expectMistake(Small + "--set fluid.viscosity=-1", Exit::Usage,
                   "out of range, allowed: 0 to 1000 Pa s");
-    expectMistake(Small + "--set fluid.viscosity=", Exit::Usage, "expected a number in Pa s, found \"\"");
+    expectMistake(Small + "--set fluid.viscosity=", Exit::Usage,
+                  "expected a number in Pa s, found \"\"");
     expectMistake(Small + "--set fluid.bodies[0].height=1", Exit::Usage,
-                  "unknown knob; known here: center, field, name, pressure, radius, rest_density, shape, velocity, viscosity");
+                  "unknown knob; known here: center, field, name, pressure, radius, rest_density, "
+                  "shape, velocity, viscosity");
     expectMistake("compare", Exit::Usage, "required");
 }
 
@@ -77,19 +79,26 @@ TEST_F(CommandLine, MistakesWithOutputsAreFoundBeforeTheRun) {
     expectMistake(endless + "--csv a.csv --screenshot missing/a.png", Exit::Output,
                   "missing/a.png");
     expectMistake(endless + "--csv run --json ./run", Exit::Output, "two outputs want this file");
-    for (const char* wrong : {"--screenshot x.jpg", "--screenshot x.bmp", "--csv x.h5", "--json x.csv", "--hdf5 x.json", "--checkpoint x.png"})
+    for (const char* wrong : {"--screenshot x.jpg", "--screenshot x.bmp", "--csv x.h5",
+                              "--json x.csv", "--hdf5 x.json", "--checkpoint x.png"})
         expectMistake(endless + wrong, Exit::Output, "give it a name that ends in .");
     EXPECT_TRUE(files().empty()) << files().front();
     write("scene.json", R"({"version": 2})");
-    expectMistake("scene.json --headless --json scene.json", Exit::Output, "the run is read from it");
+    expectMistake("scene.json --headless --json scene.json", Exit::Output,
+                  "the run is read from it");
 }
 
 TEST_F(CommandLine, AnUnnamedSceneIsNamedAfterItsFile) {
-    write("my flume.json", R"({"version": 2})"), write("b.json", R"({"version": 2, "name": "named"})"), write("old.json", R"({"simulation": {}})");
-    EXPECT_NE(call("'my flume.json' --print-config").text.find("\"name\": \"my flume\""), std::string::npos);
+    write("my flume.json", R"({"version": 2})"),
+        write("b.json", R"({"version": 2, "name": "named"})"),
+        write("old.json", R"({"simulation": {}})");
+    EXPECT_NE(call("'my flume.json' --print-config").text.find("\"name\": \"my flume\""),
+              std::string::npos);
     EXPECT_NE(call("b.json --print-config").text.find("\"name\": \"named\""), std::string::npos);
     EXPECT_NE(call("old.json --print-config").text.find("\"name\": \"old\""), std::string::npos);
-    EXPECT_EQ(parseScene(call("'my flume.json' --print-config --set name=other").text, "printed").name, "other");
+    EXPECT_EQ(
+        parseScene(call("'my flume.json' --print-config --set name=other").text, "printed").name,
+        "other");
 }
 
 TEST_F(CommandLine, PrintConfigIsAScene) {
@@ -139,11 +148,14 @@ TEST_F(CommandLine, SeriesGoesToStandardOutputAlone) {
 TEST_F(CommandLine, ProbesInsideASolidAreNamed) {
     const auto said = [&](const char* x) {
         return call(fmt::format("test/solids_small --headless --quiet --steps 40 --set "
-                                "'output.probes=[{{\"name\":\"p\",\"position\":[{},0.15,0.4]}}]'", x),
-                    "2>&1 >/dev/null").text;
+                                "'output.probes=[{{\"name\":\"p\",\"position\":[{},0.15,0.4]}}]'",
+                                x),
+                    "2>&1 >/dev/null")
+            .text;
     };
-    const std::string inside = "spindrift: output.probes[0] (p) is inside solids[2]: no fluid can be "
-                               "read there; move one of the two\n";
+    const std::string inside =
+        "spindrift: output.probes[0] (p) is inside solids[2]: no fluid can be "
+        "read there; move one of the two\n";
     const std::string text = said("0.75");
     EXPECT_EQ(text.find(inside), text.rfind(inside)) << text;
     EXPECT_NE(text.find(inside), std::string::npos) << text;
@@ -151,21 +163,30 @@ TEST_F(CommandLine, ProbesInsideASolidAreNamed) {
 }
 
 TEST_F(CommandLine, ProbesAreColumnsInEveryFormat) {
-    const std::string probes = R"( --set 'output.probes=[{"name":"wall","position":[0,0.1,0.3]},{"kind":"height","name":"gauge","position":[0.1,0,0.3]}]')";
-    const Outcome outcome = call("dam_break --headless --backend cpu --quiet --set simulation.spacing=0.04 --steps 30 "
-                                 "--csv run.csv --json run.json --hdf5 run.h5 --set output.sample_every=0.001 --frames frames --size 64x48" + probes);
+    const std::string probes =
+        R"( --set 'output.probes=[{"name":"wall","position":[0,0.1,0.3]},{"kind":"height","name":"gauge","position":[0.1,0,0.3]}]')";
+    const Outcome outcome = call(
+        "dam_break --headless --backend cpu --quiet --set simulation.spacing=0.04 --steps 30 "
+        "--csv run.csv --json run.json --hdf5 run.h5 --set output.sample_every=0.001 --frames "
+        "frames --size 64x48" +
+        probes);
     ASSERT_EQ(outcome.code, 0) << outcome.text;
     const std::string csv = slurp(folder_ / "run.csv");
     const std::string header = csv.substr(0, csv.find('\n'));
-    EXPECT_NE(header.find("max_speed [m/s],evaluations,wall.pressure [Pa],wall.density [kg/m³],wall.velocity_x [m/s],"), std::string::npos) << header;
+    EXPECT_NE(header.find("max_speed [m/s],evaluations,wall.pressure [Pa],wall.density "
+                          "[kg/m³],wall.velocity_x [m/s],"),
+              std::string::npos)
+        << header;
     EXPECT_NE(header.find("gauge.height [m],sort [ms]"), std::string::npos) << header;
     const Json series = parseJson(slurp(folder_ / "run.json"), "series");
     const hdf5::Handle file = hdf5::openFile((folder_ / "run.h5").string());
-    const std::vector<double> height = hdf5::readNumbers(file, "gauge.height"), time = hdf5::readNumbers(file, "time");
+    const std::vector<double> height = hdf5::readNumbers(file, "gauge.height"),
+                              time = hdf5::readNumbers(file, "time");
     ASSERT_EQ(height.size(), series["rows"].size());
     EXPECT_NEAR(height[0], 0.48, 0.002);
     EXPECT_GT(hdf5::readNumbers(file, "wall.pressure").back(), 100);
-    for (size_t k = 1; k + 1 < time.size(); ++k) EXPECT_GE(std::floor(time[k] / 0.001 + 1e-6), double(k)) << "a row at each millisecond";
+    for (size_t k = 1; k + 1 < time.size(); ++k)
+        EXPECT_GE(std::floor(time[k] / 0.001 + 1e-6), double(k)) << "a row at each millisecond";
     EXPECT_GT(time.size(), 10u);
     size_t frames = 0;
     for (const std::string& name : files()) frames += name.ends_with(".png");
@@ -201,16 +222,20 @@ TEST_F(CommandLine, ADivergedRunSaysSoAndKeepsItsData) {
 }
 
 TEST_F(CommandLine, ARunInTroubleGoesOnWithShorterSteps) {
-    const Outcome outcome = call(Small + "--steps 1500 --set time.mode=fixed --set time.step=0.02 --csv run.csv --set output.fps=1000 --quiet");
+    const Outcome outcome = call(Small +
+                                 "--steps 1500 --set time.mode=fixed --set time.step=0.02 --csv "
+                                 "run.csv --set output.fps=1000 --quiet");
     EXPECT_EQ(outcome.code, 0) << outcome.text;
-    EXPECT_NE(outcome.text.find("back to step 0 (0 s), on with 0.5 of the time step, try 1 of 3"), std::string::npos) << outcome.text;
+    EXPECT_NE(outcome.text.find("back to step 0 (0 s), on with 0.5 of the time step, try 1 of 3"),
+              std::string::npos)
+        << outcome.text;
     // Time runs forward in what was written.
     std::ifstream csv(folder_ / "run.csv");
     std::string line;
     double last = -1;
     int rows = 0;
     for (std::getline(csv, line); std::getline(csv, line); ++rows) {
-        if (line.starts_with('#')) continue;   // a remark
+        if (line.starts_with('#')) continue;  // a remark
         EXPECT_GT(std::stod(line), last);
         last = std::stod(line);
     }
@@ -218,8 +243,9 @@ TEST_F(CommandLine, ARunInTroubleGoesOnWithShorterSteps) {
 }
 
 TEST_F(CommandLine, AGivenUpRunLeavesItsLastGoodState) {
-    const Outcome outcome = call(
-        Small + "--steps 1000000 --set time.mode=fixed --set time.step=0.5 --checkpoint last.h5 --quiet --set time.retries=1");
+    const Outcome outcome = call(Small +
+                                 "--steps 1000000 --set time.mode=fixed --set time.step=0.5 "
+                                 "--checkpoint last.h5 --quiet --set time.retries=1");
     EXPECT_EQ(outcome.code, int(Exit::Diverged)) << outcome.text;
     EXPECT_NE(outcome.text.find("; particle "), std::string::npos) << outcome.text;
     EXPECT_EQ(std::count(outcome.text.begin(), outcome.text.end(), '\n'), 3)

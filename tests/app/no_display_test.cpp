@@ -7,7 +7,8 @@ namespace {
 
 class NoDisplay : public Shell {};
 
-// The command line of a plain start; nothing in it speaks of pictures or of running without a window.
+// The command line of a plain start; nothing in it speaks of pictures or of running without a
+// window.
 const std::string Start = "test/ball_drop_small --steps 5 --size 160x120 ";
 // As if no driver for OpenGL were installed.
 const char* const NoVendor = "__EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent";

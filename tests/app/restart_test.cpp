@@ -7,8 +7,11 @@ namespace {
 
 class Restart : public Shell {
 protected:
-    const std::string Run = "test/dam_break_small --headless --backend cpu --quiet --set output.checkpoint_every=0.02 ";
-    Checkpoint read(const std::string& name) const { return readCheckpoint((folder_ / name).string()); }
+    const std::string Run =
+        "test/dam_break_small --headless --backend cpu --quiet --set output.checkpoint_every=0.02 ";
+    Checkpoint read(const std::string& name) const {
+        return readCheckpoint((folder_ / name).string());
+    }
     static void expectSame(const Checkpoint& a, const Checkpoint& b) {
         EXPECT_EQ(a.state.particles.positions, b.state.particles.positions);
         EXPECT_EQ(a.state.particles.velocities, b.state.particles.velocities);
@@ -20,14 +23,16 @@ protected:
 TEST_F(Restart, GoesOnWithTheSameBitsForAnyNumberOfThreads) {
     ASSERT_EQ(call(Run + "--threads 2 --time 0.07 --checkpoint whole.h5").code, 0);
     ASSERT_EQ(call(Run + "--threads 2 --time 0.02 --checkpoint half.h5").code, 0);
-    ASSERT_EQ(call("half.h5 --headless --quiet --threads 1 --time 0.07 --checkpoint rest.h5").code, 0);
+    ASSERT_EQ(call("half.h5 --headless --quiet --threads 1 --time 0.07 --checkpoint rest.h5").code,
+              0);
     expectSame(read("whole.h5"), read("rest.h5"));
     EXPECT_GE(read("rest.h5").state.clock.time, 0.07);
     EXPECT_LT(read("half.h5").state.clock.time, 0.03);
 }
 
 TEST_F(Restart, DensityThatIsCarriedGoesOnToo) {
-    const std::string run = "validation/cavity --headless --backend cpu --quiet --set output.checkpoint_every=0.1 ";
+    const std::string run =
+        "validation/cavity --headless --backend cpu --quiet --set output.checkpoint_every=0.1 ";
     ASSERT_EQ(call(run + "--time 0.3 --checkpoint whole.h5").code, 0);
     ASSERT_EQ(call(run + "--time 0.1 --checkpoint half.h5").code, 0);
     ASSERT_EQ(call("half.h5 --headless --quiet --time 0.3 --checkpoint rest.h5").code, 0);
@@ -37,20 +42,29 @@ TEST_F(Restart, DensityThatIsCarriedGoesOnToo) {
 }
 
 TEST_F(Restart, SolidsGoOnFromWhereTheyAre) {
-    const std::string run = "test/solids_small --headless --backend cpu --quiet --set output.checkpoint_every=0.05 ";
+    const std::string run =
+        "test/solids_small --headless --backend cpu --quiet --set output.checkpoint_every=0.05 ";
     ASSERT_EQ(call(run + "--time 0.15 --checkpoint whole.h5").code, 0);
     ASSERT_EQ(call(run + "--time 0.05 --checkpoint half.h5").code, 0);
-    ASSERT_EQ(call("half.h5 --headless --quiet --threads 1 --time 0.15 --checkpoint rest.h5").code, 0);
+    ASSERT_EQ(call("half.h5 --headless --quiet --threads 1 --time 0.15 --checkpoint rest.h5").code,
+              0);
     expectSame(read("whole.h5"), read("rest.h5"));
     EXPECT_EQ(read("rest.h5").state.particles.solidSizes.size(), 3u);
 }
 
-// The end of a run as the start of another one; a checkpoint of that has its own particles and needs the file no more.
+// The end of a run as the start of another one; a checkpoint of that has its own particles and
+// needs the file no more.
 TEST_F(Restart, ParticlesOfOneRunBeginAnother) {
-    const std::string tank = "dam_break --headless --backend cpu --quiet --set simulation.spacing=0.04 --set simulation.formulation=delta_sph ";
+    const std::string tank =
+        "dam_break --headless --backend cpu --quiet --set simulation.spacing=0.04 --set "
+        "simulation.formulation=delta_sph ";
     for (const std::string end : {"end.csv", "end.h5"}) {
-        ASSERT_EQ(call(tank + "--steps 20 --set output.particles=" + end + " --checkpoint first.h5").code, 0);
-        const Outcome next = call(tank + "--steps 1 --set 'fluid.bodies=[{\"shape\":\"file\",\"path\":\"" + end + "\"}]' --checkpoint next.h5");
+        ASSERT_EQ(
+            call(tank + "--steps 20 --set output.particles=" + end + " --checkpoint first.h5").code,
+            0);
+        const Outcome next =
+            call(tank + "--steps 1 --set 'fluid.bodies=[{\"shape\":\"file\",\"path\":\"" + end +
+                 "\"}]' --checkpoint next.h5");
         ASSERT_EQ(next.code, 0) << next.text;
         const Outcome same = call("first.h5 --headless --quiet --steps 21 --checkpoint went_on.h5");
         ASSERT_EQ(same.code, 0) << same.text;
@@ -58,19 +72,27 @@ TEST_F(Restart, ParticlesOfOneRunBeginAnother) {
         ASSERT_EQ(a.state.particles.positions.size(), b.state.particles.positions.size());
         double apart = 0;
         for (size_t i = 0; i < a.state.particles.positions.size(); ++i)
-            apart = std::max<double>(apart, length(a.state.particles.positions[i] - b.state.particles.positions[i]));
-        EXPECT_LT(apart, 1e-4) << "the speed of sound, and with it the step, is that of another start";
+            apart = std::max<double>(
+                apart, length(a.state.particles.positions[i] - b.state.particles.positions[i]));
+        EXPECT_LT(apart, 1e-4)
+            << "the speed of sound, and with it the step, is that of another start";
         fs::remove(folder_ / end);
         EXPECT_EQ(call("next.h5 --headless --quiet --steps 2").code, 0) << "needs the file still";
     }
-    expectMistake(tank + "--steps 1 --set 'fluid.bodies=[{\"shape\":\"file\",\"path\":\"gone.csv\"}]'", Exit::Scene, "gone.csv: no such file");
+    expectMistake(
+        tank + "--steps 1 --set 'fluid.bodies=[{\"shape\":\"file\",\"path\":\"gone.csv\"}]'",
+        Exit::Scene, "gone.csv: no such file");
 }
 
 TEST_F(Restart, EveryIntegratorGoesOn) {
-    for (const char* scene : {"test/dam_break_small", "test/solids_small", "validation/taylor_green"})
+    for (const char* scene :
+         {"test/dam_break_small", "test/solids_small", "validation/taylor_green"})
         for (const char* integrator : {"velocity_verlet", "predictor_corrector"}) {
-            const std::string run = std::string(scene) + " --headless --backend cpu --quiet --set output.checkpoint_every=0.02 "
-                                    "--set time.integrator=" + integrator;
+            const std::string run =
+                std::string(scene) +
+                " --headless --backend cpu --quiet --set output.checkpoint_every=0.02 "
+                "--set time.integrator=" +
+                integrator;
             ASSERT_EQ(call(run + " --time 0.06 --checkpoint whole.h5").code, 0);
             ASSERT_EQ(call(run + " --time 0.02 --checkpoint half.h5").code, 0);
             ASSERT_EQ(call("half.h5 --headless --quiet --time 0.06 --checkpoint rest.h5").code, 0);
@@ -85,18 +107,21 @@ TEST_F(Restart, LiveKnobsMayChangeOthersNot) {
     expectMistake("a.h5 --headless --steps 2 --set simulation.spacing=0.5", Exit::Usage,
                   "simulation.spacing: can't be changed in a run that has begun");
     expectMistake("explain a.h5", Exit::Scene, "is a checkpoint; here a scene is wanted");
-    std::ofstream(folder_ / "broken.h5", std::ios::binary) << slurp(folder_ / "a.h5").substr(0, 3000);
+    std::ofstream(folder_ / "broken.h5", std::ios::binary)
+        << slurp(folder_ / "a.h5").substr(0, 3000);
     expectMistake("broken.h5 --headless", Exit::Scene, "the checkpoint is damaged or incomplete");
 }
 
 TEST_F(Restart, SignalsEndTheRunWithItsOutputs) {
     for (const auto& [signal, code] : {std::pair{"TERM", 143}, {"INT", 130}}) {
-        const std::string command = "cd '" + folder_.string() + "' && { '" SPINDRIFT_PROGRAM "' " + Run +
-                                    "--time 30 --csv run.csv --checkpoint stopped.h5 2>said & } && sleep 2 && kill -" +
-                                    signal + " $! && wait $!";
+        const std::string command =
+            "cd '" + folder_.string() + "' && { '" SPINDRIFT_PROGRAM "' " + Run +
+            "--time 30 --csv run.csv --checkpoint stopped.h5 2>said & } && sleep 2 && kill -" +
+            signal + " $! && wait $!";
         const int status = std::system(command.c_str());
         EXPECT_EQ(WEXITSTATUS(status), code) << signal;
-        EXPECT_NE(slurp(folder_ / "said").find("stopped by a signal after"), std::string::npos) << slurp(folder_ / "said");
+        EXPECT_NE(slurp(folder_ / "said").find("stopped by a signal after"), std::string::npos)
+            << slurp(folder_ / "said");
         EXPECT_GT(read("stopped.h5").state.clock.steps, 0);
         EXPECT_GT(slurp(folder_ / "run.csv").size(), 200u);
         fs::remove(folder_ / "stopped.h5");

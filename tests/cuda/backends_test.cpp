@@ -1,5 +1,5 @@
-// A run on the GPU is the run on the CPU: step by step to rounding, after hundreds of steps in its sums, and bit by bit
-// when a run moves from one to the other.
+// A run on the GPU is the run on the CPU: step by step to rounding, after hundreds of steps in its
+// sums, and bit by bit when a run moves from one to the other.
 #include "core/error.h"
 #include "cuda/gpu.h"
 #include "sim/make_simulation.h"
@@ -9,14 +9,34 @@
 namespace spindrift {
 namespace {
 
-const char* const Scenes[] = {"1.json", "2.json", "3.json", "dam_break.json", "double_dam_break.json", "ball_drop.json",
-                              "pool_drop.json", "still_pool.json", "poiseuille.json", "test/dam_break_small.json",
-                              "test/historical_small.json", "validation/hydrostatic.json", "validation/cavity.json",
-                              "validation/taylor_green.json", "validation/drop.json", "test/solids_small.json",
-                              "test/mixture_small.json", "test/surface_small.json", "test/floating_small.json", "test/mesh_small.json", "test/artery_small.json"};
+const char* const Scenes[] = {"1.json",
+                              "2.json",
+                              "3.json",
+                              "dam_break.json",
+                              "double_dam_break.json",
+                              "ball_drop.json",
+                              "pool_drop.json",
+                              "still_pool.json",
+                              "poiseuille.json",
+                              "test/dam_break_small.json",
+                              "test/historical_small.json",
+                              "validation/hydrostatic.json",
+                              "validation/cavity.json",
+                              "validation/taylor_green.json",
+                              "validation/drop.json",
+                              "test/solids_small.json",
+                              "test/mixture_small.json",
+                              "test/surface_small.json",
+                              "test/floating_small.json",
+                              "test/mesh_small.json",
+                              "test/artery_small.json"};
 
-std::unique_ptr<Simulation> onCpu(const Scene& s, const RunState& from) { return makeSimdSimulation(s, from, 2); }
-std::unique_ptr<Simulation> onGpu(const Scene& s, const RunState& from) { return makeCudaSimulation(s, from, 0); }
+std::unique_ptr<Simulation> onCpu(const Scene& s, const RunState& from) {
+    return makeSimdSimulation(s, from, 2);
+}
+std::unique_ptr<Simulation> onGpu(const Scene& s, const RunState& from) {
+    return makeCudaSimulation(s, from, 0);
+}
 
 void expectSameBits(const RunState& a, const RunState& b) {
     EXPECT_EQ(a.particles.positions, b.particles.positions);
@@ -31,23 +51,30 @@ void expectSameBits(const RunState& a, const RunState& b) {
     EXPECT_EQ(a.start.speed, b.start.speed);
 }
 
-// Largest differences of two runs: positions in support radii, densities in rest densities, pressures in rho0 c^2, which is
-// the scale that the equation of state multiplies rounding errors of density with.
-struct Difference { double position = 0, density = 0, pressure = 0; };
+// Largest differences of two runs: positions in support radii, densities in rest densities,
+// pressures in rho0 c^2, which is the scale that the equation of state multiplies rounding errors
+// of density with.
+struct Difference {
+    double position = 0, density = 0, pressure = 0;
+};
 Difference difference(const Scene& scene, Simulation& a, Simulation& b) {
     const std::vector<Particle> p = a.particles(), q = b.particles();
     double stiffness = 0;
     for (const Particle& one : p) {
         const double ratio = one.density / scene.fluid.restDensity;
-        const int gamma = scene.fluid.equationOfState == EquationOfState::Linear ? 1 : scene.fluid.gamma;
+        const int gamma =
+            scene.fluid.equationOfState == EquationOfState::Linear ? 1 : scene.fluid.gamma;
         if (one.pressure > 0 && ratio > 1.0005)
             stiffness = std::max(stiffness, gamma * one.pressure / (std::pow(ratio, gamma) - 1));
     }
     Difference d;
     for (size_t i = 0; i < p.size(); ++i) {
-        d.position = std::max(d.position, length(p[i].position - q[i].position) / supportRadius(scene));
-        d.density = std::max(d.density, std::abs(p[i].density - q[i].density) / scene.fluid.restDensity);
-        if (stiffness > 0) d.pressure = std::max(d.pressure, std::abs(p[i].pressure - q[i].pressure) / stiffness);
+        d.position =
+            std::max(d.position, length(p[i].position - q[i].position) / supportRadius(scene));
+        d.density =
+            std::max(d.density, std::abs(p[i].density - q[i].density) / scene.fluid.restDensity);
+        if (stiffness > 0)
+            d.pressure = std::max(d.pressure, std::abs(p[i].pressure - q[i].pressure) / stiffness);
     }
     return d;
 }
@@ -58,7 +85,7 @@ TEST_P(Backends, OneStepFromTheSameStateAgreesToRounding) {
     NEED_GPU();
     const Scene scene = shippedScene(GetParam());
     auto before = onCpu(scene, placeParticles(scene));
-    before->step(40);   // no longer a lattice
+    before->step(40);  // no longer a lattice
     const RunState state = before->state();
     auto cpu = onCpu(scene, state), gpu = onGpu(scene, state);
     cpu->step(), gpu->step();
@@ -70,8 +97,11 @@ TEST_P(Backends, OneStepFromTheSameStateAgreesToRounding) {
     EXPECT_GT(gpu->measure().time, state.clock.time);
 }
 
-// The most that runs which begin a rounding error apart differ by from this one after as many steps.
-struct Scatter { double energy = 0, centerOfMass = 0, densityError = 0; };
+// The most that runs which begin a rounding error apart differ by from this one after as many
+// steps.
+struct Scatter {
+    double energy = 0, centerOfMass = 0, densityError = 0;
+};
 double energyOf(const Measurement& m) { return m.kineticEnergy + m.potentialEnergy; }
 Scatter scatterOf(const Scene& scene, const Measurement& m) {
     Scatter scatter;
@@ -83,8 +113,10 @@ Scatter scatterOf(const Scene& scene, const Measurement& m) {
         run->step(int(m.steps));
         const Measurement n = run->measure();
         scatter.energy = std::max(scatter.energy, std::abs(energyOf(n) - energyOf(m)));
-        scatter.centerOfMass = std::max(scatter.centerOfMass, length(n.centerOfMass - m.centerOfMass));
-        scatter.densityError = std::max(scatter.densityError, std::abs(n.densityError - m.densityError));
+        scatter.centerOfMass =
+            std::max(scatter.centerOfMass, length(n.centerOfMass - m.centerOfMass));
+        scatter.densityError =
+            std::max(scatter.densityError, std::abs(n.densityError - m.densityError));
     }
     return scatter;
 }
@@ -96,13 +128,15 @@ TEST_P(Backends, SumsAgreeAfterThreeHundredSteps) {
     cpu->step(300), gpu->step(300);
     const Measurement a = cpu->measure(), b = gpu->measure();
     const double height = scene.domain.max.y - scene.domain.min.y;
-    // Once the few hundred particles of the emulated GPU's scenes move chaotically, backends may differ as runs of the CPU do.
+    // Once the few hundred particles of the emulated GPU's scenes move chaotically, backends may
+    // differ as runs of the CPU do.
     const Scatter scatter = scatterOf(scene, a);
     EXPECT_EQ(b.steps, 300);
     EXPECT_NEAR(b.time, a.time, 0.01 * a.time);
     EXPECT_NEAR(energyOf(b), energyOf(a), 0.01 * std::abs(energyOf(a)) + 2 * scatter.energy);
     EXPECT_LT(length(b.centerOfMass - a.centerOfMass), 0.01 * height + 2 * scatter.centerOfMass);
-    EXPECT_NEAR(b.densityError, a.densityError, (emulated ? 0.1 : 0.01) * a.densityError + 1e-5 + 2 * scatter.densityError);
+    EXPECT_NEAR(b.densityError, a.densityError,
+                (emulated ? 0.1 : 0.01) * a.densityError + 1e-5 + 2 * scatter.densityError);
 }
 
 TEST_P(Backends, TwoRunsAreTheSameBits) {
@@ -110,7 +144,7 @@ TEST_P(Backends, TwoRunsAreTheSameBits) {
     const Scene scene = shippedScene(GetParam());
     auto one = onGpu(scene, placeParticles(scene)), two = onGpu(scene, placeParticles(scene));
     one->step(50);
-    for (int k = 0; k < 50; ++k) {   // looking on must not change anything
+    for (int k = 0; k < 50; ++k) {  // looking on must not change anything
         two->step();
         if (k % 10 == 0) two->measure(), two->resetTimes();
     }
@@ -126,20 +160,23 @@ TEST(GravityRamp, GrowsInRecordedSteps) {
     scene.simulation.gravityRamp = 0.05f;
     auto cpu = onCpu(scene, placeParticles(scene)), gpu = onGpu(scene, placeParticles(scene));
     while (cpu->measure().time < 0.04) cpu->step(), gpu->step();
-    const double full = 9.81 * cpu->measure().time;   // m/s, of a free fall without a ramp
+    const double full = 9.81 * cpu->measure().time;  // m/s, of a free fall without a ramp
     EXPECT_GT(cpu->measure().kineticEnergy, 0);
     EXPECT_LT(gpu->measure().maxSpeed, full);
-    EXPECT_NEAR(gpu->measure().kineticEnergy, cpu->measure().kineticEnergy, 1e-3 * cpu->measure().kineticEnergy);
+    EXPECT_NEAR(gpu->measure().kineticEnergy, cpu->measure().kineticEnergy,
+                1e-3 * cpu->measure().kineticEnergy);
 }
 
 // Where density is carried and particles are shifted there is most to sort along.
 TEST(Integrators, StepAsOnTheCpu) {
     NEED_GPU();
-    for (const char* file : {"test/dam_break_small.json", "test/solids_small.json", "validation/drop.json", "validation/taylor_green.json"})
+    for (const char* file : {"test/dam_break_small.json", "test/solids_small.json",
+                             "validation/drop.json", "validation/taylor_green.json"})
         for (Integrator integrator : {Integrator::VelocityVerlet, Integrator::PredictorCorrector}) {
             Scene scene = shippedScene(file);
             scene.time.integrator = integrator;
-            auto cpu = onCpu(scene, placeParticles(scene)), gpu = onGpu(scene, placeParticles(scene));
+            auto cpu = onCpu(scene, placeParticles(scene)),
+                 gpu = onGpu(scene, placeParticles(scene));
             cpu->step(20), gpu->step(20);
             const Difference d = difference(scene, *cpu, *gpu);
             EXPECT_LT(d.position, 1e-4) << file;
@@ -148,15 +185,18 @@ TEST(Integrators, StepAsOnTheCpu) {
         }
 }
 
-// With steps of their own for particles the host asks after each moment whether the step is over. The CPU's lanes evaluate whole clusters, also
-// those of their particles that aren't due; in double precision it is one particle at a time, as here.
+// With steps of their own for particles the host asks after each moment whether the step is over.
+// The CPU's lanes evaluate whole clusters, also those of their particles that aren't due; in double
+// precision it is one particle at a time, as here.
 TEST(LocalSteps, AreThoseOfTheCpu) {
     NEED_GPU();
-    for (const char* file : {"test/dam_break_small.json", "test/solids_small.json", "test/ball_drop_small.json"}) {
+    for (const char* file :
+         {"test/dam_break_small.json", "test/solids_small.json", "test/ball_drop_small.json"}) {
         Scene scene = shippedScene(file);
-        if (file == std::string("test/ball_drop_small.json")) scene.simulation.formulation = Formulation::DeltaSph;
+        if (file == std::string("test/ball_drop_small.json"))
+            scene.simulation.formulation = Formulation::DeltaSph;
         auto before = onCpu(scene, placeParticles(scene));
-        before->step(40);   // no longer so crowded that rounding decides how short a step is
+        before->step(40);  // no longer so crowded that rounding decides how short a step is
         scene.time.mode = TimeMode::Local;
         auto gpu = onGpu(scene, before->state()), again = onGpu(scene, before->state());
         auto cpu = makeDoubleSimulation(scene, before->state(), 2);
@@ -166,7 +206,8 @@ TEST(LocalSteps, AreThoseOfTheCpu) {
         const Difference d = difference(scene, *cpu, *gpu);
         EXPECT_LT(d.position, 1e-4) << file;
         EXPECT_LT(d.density, 1e-4) << file;
-        EXPECT_NEAR(gpu->measure().evaluations, cpu->measure().evaluations, 0.01 * cpu->measure().evaluations);
+        EXPECT_NEAR(gpu->measure().evaluations, cpu->measure().evaluations,
+                    0.01 * cpu->measure().evaluations);
         EXPECT_LE(gpu->bytes(), estimateGpuMemory(scene, countParticles(scene)));
     }
 }
@@ -181,7 +222,8 @@ TEST(LocalSteps, LetAPoolRest) {
     scene.time.mode = TimeMode::Local;
     auto gpu = onGpu(scene, placeParticles(scene));
     double before = -1;
-    for (int k = 0; k < 200 && gpu->measure().evaluations > before; ++k) before = gpu->measure().evaluations, gpu->step(50);
+    for (int k = 0; k < 200 && gpu->measure().evaluations > before; ++k)
+        before = gpu->measure().evaluations, gpu->step(50);
     EXPECT_EQ(gpu->measure().evaluations, before) << "it never rests";
     EXPECT_EQ(gpu->measure().kineticEnergy, 0);
     gpu->stir({toFloat(gpu->particle(0).position), 0.05f, {1, 0, 0}});
@@ -210,24 +252,43 @@ TEST(Recordings, NeverGoStale) {
     const Scene first = testScene("dam_break_small.json");
     for (unsigned seed : {1u, 2u, 3u, 4u, 5u}) {
         Scene scene = first;
-        if (seed > 3) scene.time.integrator = seed == 4 ? Integrator::VelocityVerlet : Integrator::PredictorCorrector;
+        if (seed > 3)
+            scene.time.integrator =
+                seed == 4 ? Integrator::VelocityVerlet : Integrator::PredictorCorrector;
         auto cpu = onCpu(scene, placeParticles(scene)), gpu = onGpu(scene, placeParticles(scene));
         std::mt19937 random(seed);
         std::vector<Vertex> vertices(size_t(gpu->fluidCount()) + size_t(gpu->wallCount()));
         for (int k = 0; k < 40; ++k) {
             switch (random() % 8) {
-                case 0: scene.simulation.gravity.x = 0.1f * float(random() % 100); break;
-                case 1: scene.fluid.viscosity = random() % 2 ? 0.0f : 0.5f; break;
-                case 2: scene.fluid.artificialViscosity = random() % 2 ? 0.0f : 0.1f; break;
-                case 3: scene.time.mode = TimeMode(random() % (seed > 3 ? 2 : 3)); scene.time.step = 2e-4f; break;
+                case 0:
+                    scene.simulation.gravity.x = 0.1f * float(random() % 100);
+                    break;
+                case 1:
+                    scene.fluid.viscosity = random() % 2 ? 0.0f : 0.5f;
+                    break;
+                case 2:
+                    scene.fluid.artificialViscosity = random() % 2 ? 0.0f : 0.1f;
+                    break;
+                case 3:
+                    scene.time.mode = TimeMode(random() % (seed > 3 ? 2 : 3));
+                    scene.time.step = 2e-4f;
+                    break;
                 case 4: {
-                    const Stir stir{{0.2f, 0.1f, 0.1f}, random() % 2 ? 0.0f : 0.2f, {1, float(k % 3), 0}};
+                    const Stir stir{
+                        {0.2f, 0.1f, 0.1f}, random() % 2 ? 0.0f : 0.2f, {1, float(k % 3), 0}};
                     cpu->stir(stir), gpu->stir(stir);
                     break;
                 }
-                case 5: gpu->writeVertices({vertices.data()}, ColorBy::Pressure, k % 2 ? gpu->wallCount() : 0); break;
-                case 6: gpu->resetTimes(); break;
-                case 7: gpu->measure(), gpu->times(); break;
+                case 5:
+                    gpu->writeVertices({vertices.data()}, ColorBy::Pressure,
+                                       k % 2 ? gpu->wallCount() : 0);
+                    break;
+                case 6:
+                    gpu->resetTimes();
+                    break;
+                case 7:
+                    gpu->measure(), gpu->times();
+                    break;
             }
             cpu->apply(scene), gpu->apply(scene);
             const int steps = int(random() % 4);
@@ -235,7 +296,8 @@ TEST(Recordings, NeverGoStale) {
         }
         EXPECT_LT(difference(scene, *cpu, *gpu).position, 1e-2) << "seed " << seed;
         EXPECT_NEAR(cpu->measure().time, gpu->measure().time, 1e-3 * cpu->measure().time);
-        EXPECT_NEAR(cpu->measure().kineticEnergy, gpu->measure().kineticEnergy, 1e-3 * cpu->measure().kineticEnergy);
+        EXPECT_NEAR(cpu->measure().kineticEnergy, gpu->measure().kineticEnergy,
+                    1e-3 * cpu->measure().kineticEnergy);
     }
 }
 
@@ -274,7 +336,7 @@ TEST(Gpu, TooLargeASceneIsRefusedAndLeavesTheOldRunAlone) {
     Scene huge = scene;
     huge.domain.max = {40, 40, 40};
     huge.fluid.bodies = {Body{{.max{40, 40, 40}}}};
-    huge.simulation.spacing = emulated ? 0.14f : 0.018f;   // 23 million, 11 thousand million
+    huge.simulation.spacing = emulated ? 0.14f : 0.018f;  // 23 million, 11 thousand million
     try {
         makeSimulation(huge);
         FAIL() << "was not refused";

@@ -50,15 +50,19 @@ protected:
         if constexpr (std::is_same_v<Device, Cuda>) NEED_GPU();
     }
     static Device make() {
-        if constexpr (std::is_same_v<Device, Cuda>) return Cuda(0);
-        else return Omp(2);
+        if constexpr (std::is_same_v<Device, Cuda>)
+            return Cuda(0);
+        else
+            return Omp(2);
     }
-    template <class T> static std::vector<T> fetch(Device& device, const Buffer<T, Device>& buffer) {
+    template <class T>
+    static std::vector<T> fetch(Device& device, const Buffer<T, Device>& buffer) {
         std::vector<T> host(buffer.size());
         device.download(host.data(), buffer.data(), host.size());
         return host;
     }
-    template <class T> static void put(Device& device, Buffer<T, Device>& buffer, const std::vector<T>& host) {
+    template <class T>
+    static void put(Device& device, Buffer<T, Device>& buffer, const std::vector<T>& host) {
         buffer.resize(host.size());
         device.upload(buffer.data(), host.data(), host.size());
     }
@@ -75,7 +79,8 @@ TYPED_TEST(Devices, LoopReachesEverybody) {
         out.resize(n);
         device.forEach(n, Square{in.data(), out.data()});
         const std::vector<int> squares = this->fetch(device, out);
-        for (int i = 0; i < n; ++i) ASSERT_EQ(squares[i], numbers[i] * numbers[i]) << i << " of " << n;
+        for (int i = 0; i < n; ++i)
+            ASSERT_EQ(squares[i], numbers[i] * numbers[i]) << i << " of " << n;
     }
 }
 
@@ -117,15 +122,19 @@ TYPED_TEST(Devices, SortIsStable) {
         ASSERT_EQ(device.sortByCell(n, key.data(), rows, rowLength, 1, cellStart.data(), order), n);
         std::vector<int> expected(n);
         std::iota(expected.begin(), expected.end(), 0);
-        std::stable_sort(expected.begin(), expected.end(), [&](int a, int b) { return keys[a] < keys[b]; });
+        std::stable_sort(expected.begin(), expected.end(),
+                         [&](int a, int b) { return keys[a] < keys[b]; });
         EXPECT_EQ(this->fetch(device, order), expected);
         const std::vector<int> starts = this->fetch(device, cellStart);
         for (int c = 0; c <= rows * rowLength; ++c)
-            ASSERT_EQ(starts[c], std::count_if(keys.begin(), keys.end(), [&](int k) { return k < c; })) << c;
+            ASSERT_EQ(starts[c],
+                      std::count_if(keys.begin(), keys.end(), [&](int k) { return k < c; }))
+                << c;
     }
 }
 
-// Particles that are nowhere must not share a cell: the run has to stop with a message, not to hang in N^2 pairs.
+// Particles that are nowhere must not share a cell: the run has to stop with a message, not to hang
+// in N^2 pairs.
 TYPED_TEST(Devices, ParticlesThatAreNowhereAreSpreadOverTheCells) {
     const int n = 1000;
     TypeParam device = this->make();
@@ -155,7 +164,7 @@ TEST(CudaVertices, DeviceMemoryAndHostGetTheSame) {
         Cuda device(0);
         Buffer<Vertex, Cuda> own(device);
         own.resize(n);
-        device.wait();   // the simulation works on another stream
+        device.wait();  // the simulation works on another stream
         std::vector<Vertex> direct(n), copied(n);
         const Range a = simulation->writeVertices({own.data(), 0}, ColorBy::Velocity, walls);
         device.download(direct.data(), own.data(), n);

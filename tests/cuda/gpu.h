@@ -1,6 +1,6 @@
 #pragma once
-// What the GPU's tests share. They are built twice: for a real GPU, where they skip themselves without one, and for the
-// emulated one, which takes smaller scenes.
+// What the GPU's tests share. They are built twice: for a real GPU, where they skip themselves
+// without one, and for the emulated one, which takes smaller scenes.
 #include "device/cuda_devices.h"
 #include "scene/check.h"
 #include "scene/json.h"
@@ -12,8 +12,9 @@
 #include <cstdlib>
 #include <string>
 
-#define NEED_GPU() \
-    if (!spindrift::cudaProblem(0).empty()) GTEST_SKIP() << "skipped: no CUDA device (" << spindrift::cudaProblem(0) << ")"
+#define NEED_GPU()                          \
+    if (!spindrift::cudaProblem(0).empty()) \
+    GTEST_SKIP() << "skipped: no CUDA device (" << spindrift::cudaProblem(0) << ")"
 
 namespace spindrift {
 
@@ -25,10 +26,13 @@ inline constexpr bool emulated = false;
 
 // A shipped scene; coarser on the emulated GPU, so that it has about `particles` of fluid there.
 inline Scene shippedScene(const std::string& file, double particles = 400) {
-    const char* folder = std::getenv("SPINDRIFT_CONFIGS");   // where the checkout is not where the program was built
-    Scene scene = loadScene(std::string(folder ? folder : SPINDRIFT_SOURCE_DIR "/configs") + "/" + file);
+    const char* folder =
+        std::getenv("SPINDRIFT_CONFIGS");  // where the checkout is not where the program was built
+    Scene scene =
+        loadScene(std::string(folder ? folder : SPINDRIFT_SOURCE_DIR "/configs") + "/" + file);
     const double count = double(countParticles(scene).fluid);
-    if (emulated && count > particles) scene.simulation.spacing *= float(std::cbrt(count / particles));
+    if (emulated && count > particles)
+        scene.simulation.spacing *= float(std::cbrt(count / particles));
     checkScene(scene, file);
     return scene;
 }

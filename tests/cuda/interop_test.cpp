@@ -17,7 +17,8 @@ protected:
     void SetUp() override {
         NEED_GPU();
         static EglContext context(0);
-        if (drawingDevice() != 0) GTEST_SKIP() << "skipped: OpenGL (" << glName() << ") draws elsewhere";
+        if (drawingDevice() != 0)
+            GTEST_SKIP() << "skipped: OpenGL (" << glName() << ") draws elsewhere";
         scene.compute.backend = Backend::Cuda;
         scene.compute.device = 0;
         simulation = makeSimulation(scene);
@@ -105,11 +106,11 @@ TEST_F(Interop, RegistersOnceAndMapsOncePerFrame) {
         simulation->step();
         frame.update(*simulation, scene);
         frame.draw(scene);
-        frame.draw(scene);   // looked at again: nothing is mapped
+        frame.draw(scene);  // looked at again: nothing is mapped
     }
     EXPECT_EQ(emulation::counts.registrations, before.registrations);
     EXPECT_EQ(emulation::counts.maps - before.maps, 10);
-    scene.view.showWalls = true;   // more vertices
+    scene.view.showWalls = true;  // more vertices
     frame.update(*simulation, scene);
     EXPECT_EQ(emulation::counts.registrations, before.registrations + 1);
 }

@@ -1,5 +1,6 @@
-// The device's counting sort against CUB's radix sort, on the cells of a dam break: same result, which one is faster?
-// sort_bench [N...] prints a JSON line a size. Exit code 6 without a GPU, 1 when the results differ.
+// The device's counting sort against CUB's radix sort, on the cells of a dam break: same result,
+// which one is faster? sort_bench [N...] prints a JSON line a size. Exit code 6 without a GPU, 1
+// when the results differ.
 #include "core/error.h"
 #include "device/cuda.h"
 
@@ -27,20 +28,27 @@ struct CellStarts {
         int low = 0, high = n;
         while (low < high) {
             const int middle = low + (high - low) / 2;
-            if (keys[middle] < cell) low = middle + 1;
-            else high = middle;
+            if (keys[middle] < cell)
+                low = middle + 1;
+            else
+                high = middle;
         }
         start[cell] = low;
     }
 };
 
-struct Case { int n, cells; std::vector<int> keys; };
+struct Case {
+    int n, cells;
+    std::vector<int> keys;
+};
 
-// About half a particle per cell that is filled, one cell in five filled, particles nearly in order, as from step to step.
+// About half a particle per cell that is filled, one cell in five filled, particles nearly in
+// order, as from step to step.
 Case makeCase(int n) {
     Case c{n, 3 * n, std::vector<int>(size_t(n))};
     std::mt19937 random(1);
-    for (int i = 0; i < n; ++i) c.keys[i] = std::clamp(int(0.55 * i) + int(random() % 64) - 32, 0, c.cells - 1);
+    for (int i = 0; i < n; ++i)
+        c.keys[i] = std::clamp(int(0.55 * i) + int(random() % 64) - 32, 0, c.cells - 1);
     return c;
 }
 
@@ -52,25 +60,27 @@ double median(std::vector<double> ms) {
 bool compare(int n) {
     const Case c = makeCase(n);
     Cuda device(0);
-    Buffer<int, Cuda> key(device), start(device), order(device), radixStart(device), keysOut(device), items(device),
-        radixOrder(device);
+    Buffer<int, Cuda> key(device), start(device), order(device), radixStart(device),
+        keysOut(device), items(device), radixOrder(device);
     for (auto* b : {&key, &items, &keysOut, &radixOrder}) b->resize(size_t(n));
     for (auto* b : {&start, &radixStart}) b->resize(size_t(c.cells) + 1);
     device.upload(key.data(), c.keys.data(), c.keys.size());
-    device.sortByCell(n, key.data(), 1, c.cells, 1, start.data(), order);   // makes room
-    const double counting = median(device.timeEach(100, [&] {
-        device.sortByCell(n, key.data(), 1, c.cells, 1, start.data(), order);
-    }));
+    device.sortByCell(n, key.data(), 1, c.cells, 1, start.data(), order);  // makes room
+    const double counting = median(device.timeEach(
+        100, [&] { device.sortByCell(n, key.data(), 1, c.cells, 1, start.data(), order); }));
 
     const int bits = int(std::ceil(std::log2(double(c.cells) + 1)));
     size_t bytes = 0;
-    cub::DeviceRadixSort::SortPairs(nullptr, bytes, key.data(), keysOut.data(), items.data(), radixOrder.data(), n, 0, bits);
+    cub::DeviceRadixSort::SortPairs(nullptr, bytes, key.data(), keysOut.data(), items.data(),
+                                    radixOrder.data(), n, 0, bits);
     Buffer<char, Cuda> space(device);
     space.resize(bytes);
     const double radix = median(device.timeEach(100, [&] {
         device.forEach(n, Numbers{items.data()});
-        requireCuda(cub::DeviceRadixSort::SortPairs(space.data(), bytes, key.data(), keysOut.data(), items.data(),
-                                                    radixOrder.data(), n, 0, bits, device.stream()), "sorting");
+        requireCuda(cub::DeviceRadixSort::SortPairs(space.data(), bytes, key.data(), keysOut.data(),
+                                                    items.data(), radixOrder.data(), n, 0, bits,
+                                                    device.stream()),
+                    "sorting");
         device.forEach(c.cells + 1, CellStarts{keysOut.data(), n, radixStart.data()});
     }));
 
@@ -80,8 +90,10 @@ bool compare(int n) {
         return host;
     };
     const bool same = fetch(order) == fetch(radixOrder) && fetch(start) == fetch(radixStart);
-    std::printf("{\"particles\": %d, \"cells\": %d, \"counting_ms\": %.4f, \"radix_ms\": %.4f, \"same\": %s}\n", n, c.cells,
-                counting, radix, same ? "true" : "false");
+    std::printf(
+        "{\"particles\": %d, \"cells\": %d, \"counting_ms\": %.4f, \"radix_ms\": %.4f, \"same\": "
+        "%s}\n",
+        n, c.cells, counting, radix, same ? "true" : "false");
     return same;
 }
 

@@ -9,7 +9,8 @@
 namespace spindrift {
 namespace {
 
-uint64_t hashAfter(const std::string& file, int threads, int steps, int change = 0, Integrator integrator = {}, TimeMode mode = TimeMode::Cfl) {
+uint64_t hashAfter(const std::string& file, int threads, int steps, int change = 0,
+                   Integrator integrator = {}, TimeMode mode = TimeMode::Cfl) {
     Scene scene = loadScene(std::string(SPINDRIFT_SOURCE_DIR) + "/configs/" + file);
     scene.compute.threads = threads;
     scene.time.integrator = integrator;
@@ -17,10 +18,11 @@ uint64_t hashAfter(const std::string& file, int threads, int steps, int change =
     scene.simulation.gravity.x += 1e-3f * float(change);
     auto simulation = makeSimulation(scene);
     simulation->step(steps);
-    uint64_t hash = 1469598103934665603ull;   // FNV-1a
+    uint64_t hash = 1469598103934665603ull;  // FNV-1a
     for (const Particle& p : simulation->particles())
         for (const Vec3d& v : {p.position, p.velocity, Vec3d{p.density, p.pressure, 0}})
-            for (int k = 0; k < 3; ++k) hash = (hash ^ std::bit_cast<uint64_t>(v[k])) * 1099511628211ull;
+            for (int k = 0; k < 3; ++k)
+                hash = (hash ^ std::bit_cast<uint64_t>(v[k])) * 1099511628211ull;
     return hash;
 }
 
@@ -44,7 +46,8 @@ TEST(Determinism, SameBitsWithEachIntegrator) {
 }
 
 TEST(Determinism, SameBitsWithLocalSteps) {
-    for (const char* file : {"test/dam_break_small.json", "test/ball_drop_small.json", "test/solids_small.json", "test/mesh_small.json"}) {
+    for (const char* file : {"test/dam_break_small.json", "test/ball_drop_small.json",
+                             "test/solids_small.json", "test/mesh_small.json"}) {
         const uint64_t one = hashAfter(file, 1, 200, 0, {}, TimeMode::Local);
         EXPECT_EQ(one, hashAfter(file, 3, 200, 0, {}, TimeMode::Local)) << file;
         EXPECT_NE(one, hashAfter(file, 1, 200)) << "local steps make no difference";
@@ -52,8 +55,11 @@ TEST(Determinism, SameBitsWithLocalSteps) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Threads,
-                         testing::Values("test/dam_break_small.json", "test/ball_drop_small.json", "test/historical_small.json",
-                                         "validation/hydrostatic.json", "validation/cavity.json", "test/solids_small.json", "test/mesh_small.json", "test/floating_small.json", "test/artery_small.json"));
+                         testing::Values("test/dam_break_small.json", "test/ball_drop_small.json",
+                                         "test/historical_small.json",
+                                         "validation/hydrostatic.json", "validation/cavity.json",
+                                         "test/solids_small.json", "test/mesh_small.json",
+                                         "test/floating_small.json", "test/artery_small.json"));
 
 }  // namespace
 }  // namespace spindrift

@@ -1,5 +1,6 @@
-// A tube full of fluid is squeezed: the fluid goes to the other end, nobody leaves through the wall, whatever the sizes of particles and the reach of
-// contacts; slit, it bleeds through the slit.
+// A tube full of fluid is squeezed: the fluid goes to the other end, nobody leaves through the
+// wall, whatever the sizes of particles and the reach of contacts; slit, it bleeds through the
+// slit.
 #include "scene/json.h"
 #include "scene/sample_object.h"
 #include "sim/simulation.h"
@@ -12,7 +13,8 @@
 namespace spindrift {
 namespace {
 
-// Rings of particles around the tube; a point is inside if it lies in the polygon between the two beside it, seen along the tube.
+// Rings of particles around the tube; a point is inside if it lies in the polygon between the two
+// beside it, seen along the tube.
 class Rings {
 public:
     explicit Rings(const ObjectSample& tube) {
@@ -28,7 +30,8 @@ public:
         while (ring + 2 * size_ < places.size() && middle(ring + size_) < p.x) ring += size_;
         const double from = middle(ring), share = (p.x - from) / (middle(ring + size_) - from);
         auto corner = [&](size_t k) {
-            const Vec3d a = toDouble(places[ring + k % size_]), b = toDouble(places[ring + size_ + k % size_]);
+            const Vec3d a = toDouble(places[ring + k % size_]),
+                        b = toDouble(places[ring + size_ + k % size_]);
             return a + share * (b - a);
         };
         bool in = false;
@@ -58,12 +61,13 @@ void runUntil(Simulation& simulation, double time) {
 TEST(Artery, NobodyLeavesThroughTheWall) {
     for (const float ratio : {1.0f, 2.0f, 4.0f})
         for (const float influence : {1.25f, 1.5f, 1.75f}) {
-            if ((ratio == 2) != (influence == 1.5f)) continue;   // the middle and the corners
+            if ((ratio == 2) != (influence == 1.5f)) continue;  // the middle and the corners
             Scene scene = artery();
-            scene.objects[0].spacing = ratio * scene.simulation.spacing, scene.contact.influence = influence;
+            scene.objects[0].spacing = ratio * scene.simulation.spacing,
+            scene.contact.influence = influence;
             auto simulation = makeSimulation(scene);
             const Rings rings(sampleObjects(scene));
-            auto farEnd = [&] {   // share of the fluid beyond the plates
+            auto farEnd = [&] {  // share of the fluid beyond the plates
                 double n = 0;
                 for (const Particle& p : simulation->particles()) n += p.position.x > 0.08;
                 return n / simulation->fluidCount();
@@ -73,9 +77,12 @@ TEST(Artery, NobodyLeavesThroughTheWall) {
             runUntil(*simulation, 0.3);
             const std::vector<Vec3> places = simulation->state().objects.positions;
             int escaped = 0;
-            for (const Particle& p : simulation->particles()) escaped += !rings.inside(places, p.position);
-            std::printf("wall / fluid %g, influence %g: %d of %d escaped, beyond the plates %.1f -> %.1f %%\n", ratio, influence, escaped, simulation->fluidCount(),
-                        100 * before, 100 * farEnd());
+            for (const Particle& p : simulation->particles())
+                escaped += !rings.inside(places, p.position);
+            std::printf(
+                "wall / fluid %g, influence %g: %d of %d escaped, beyond the plates %.1f -> %.1f "
+                "%%\n",
+                ratio, influence, escaped, simulation->fluidCount(), 100 * before, 100 * farEnd());
             EXPECT_EQ(escaped, 0) << ratio << " " << influence;
             EXPECT_GT(farEnd(), before + 0.01) << ratio << " " << influence;
         }
@@ -93,7 +100,8 @@ TEST(Artery, BleedsThroughTheSlitOnly) {
         for (const Particle& p : simulation->particles()) {
             if (rings.inside(places, p.position) || !out.insert(p.id).second) continue;
             EXPECT_GT(time, 0.1);
-            EXPECT_TRUE(p.position.x > 0.08 && p.position.x < 0.13 && p.position.z > 0.06) << time << ": " << p.position.x << " " << p.position.y << " " << p.position.z;
+            EXPECT_TRUE(p.position.x > 0.08 && p.position.x < 0.13 && p.position.z > 0.06)
+                << time << ": " << p.position.x << " " << p.position.y << " " << p.position.z;
         }
     }
     std::printf("%zu of %d bled\n", out.size(), simulation->fluidCount());

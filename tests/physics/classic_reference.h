@@ -1,6 +1,7 @@
 #pragma once
-// The classic formulation in plain double precision, straight from its formulas, one pair at a time and with none of
-// the program's kernels, terms or passes: the yardstick for sim/. Only the particles' places come from the program.
+// The classic formulation in plain double precision, straight from its formulas, one pair at a time
+// and with none of the program's kernels, terms or passes: the yardstick for sim/. Only the
+// particles' places come from the program.
 #include "core/vec.h"
 #include "scene/particles.h"
 
@@ -17,8 +18,14 @@ struct Classic {
     static constexpr double pi = 3.14159265358979323846;
 
     Classic(const Scene& s, const Placement& p)
-        : dt(s.time.step), R(supportRadius(s)), mass(s.fluid.particleMass), rho0(s.fluid.restDensity),
-          nu(s.fluid.viscosity), k(s.fluid.stiffness), gravity(s.simulation.gravity.y), side(s.domain.max.x) {
+        : dt(s.time.step),
+          R(supportRadius(s)),
+          mass(s.fluid.particleMass),
+          rho0(s.fluid.restDensity),
+          nu(s.fluid.viscosity),
+          k(s.fluid.stiffness),
+          gravity(s.simulation.gravity.y),
+          side(s.domain.max.x) {
         for (Vec3 a : p.positions) x.push_back(toDouble(a));
         for (Vec3 a : p.walls) walls.push_back(toDouble(a));
         v.resize(x.size());
@@ -26,7 +33,8 @@ struct Classic {
         fill(wallCells_, walls);
         for (size_t i = 0; i < walls.size(); ++i) {
             double sum = 0;
-            near(wallCells_, walls, walls[i], [&](size_t j, Vec3d r) { sum += j != i ? W(length(r)) : 0; });
+            near(wallCells_, walls, walls[i],
+                 [&](size_t j, Vec3d r) { sum += j != i ? W(length(r)) : 0; });
             wallMass.push_back(1.4 * rho0 / sum);
         }
     }
@@ -34,9 +42,10 @@ struct Classic {
     double W(double d) const {
         const double q = 2 * d / R;
         if (q > 2) return 0;
-        return 0.25 / (pi * R * R * R) * (q > 1 ? (2 - q) * (2 - q) * (2 - q) : q * q * (3 * q - 6) + 4);
+        return 0.25 / (pi * R * R * R) *
+               (q > 1 ? (2 - q) * (2 - q) * (2 - q) : q * q * (3 * q - 6) + 4);
     }
-    double gradient(double d) const {   // grad W = gradient(d) x_ij
+    double gradient(double d) const {  // grad W = gradient(d) x_ij
         const double q = 2 * d / R;
         if (q > 2 || q == 0) return 0;
         return (q > 1 ? q * (12 - 3 * q) - 12 : (9 * q - 12) * q) / (pi * q * R * R * R * R * R);
@@ -55,14 +64,17 @@ struct Classic {
                 if (j != i) density += mass * W(d);
                 next[i] = next[i] + (exchange * (R - d)) * (v[j] - v[i]);
             });
-            near(wallCells_, walls, x[i], [&](size_t b, Vec3d r) { density += wallMass[b] * W(length(r)); });
+            near(wallCells_, walls, x[i],
+                 [&](size_t b, Vec3d r) { density += wallMass[b] * W(length(r)); });
             rho[i] = density;
             next[i].y += gravity * dt;
         }
         v = next;
         std::vector<double> term(n);
         for (size_t i = 0; i < n; ++i)
-            term[i] = rho[i] > 0 ? std::max(0.0, k * (std::pow(rho[i] / rho0, 7) - 1)) / (rho[i] * rho[i]) : 0;
+            term[i] = rho[i] > 0
+                          ? std::max(0.0, k * (std::pow(rho[i] / rho0, 7) - 1)) / (rho[i] * rho[i])
+                          : 0;
         std::vector<Vec3d> a(n);
 #pragma omp parallel for
         for (size_t i = 0; i < n; ++i) {
@@ -111,11 +123,14 @@ private:
         cells.assign(size_t(n) * n * n, {});
         for (size_t i = 0; i < points.size(); ++i) {
             const Vec3d& p = points[i];
-            cells[(size_t(coordinate(p.z)) * n + coordinate(p.y)) * n + coordinate(p.x)].push_back(i);
+            cells[(size_t(coordinate(p.z)) * n + coordinate(p.y)) * n + coordinate(p.x)].push_back(
+                i);
         }
     }
-    template <class F> void near(const Cells& cells, const std::vector<Vec3d>& points, Vec3d at, F f) const {
-        const int n = perSide(), cx = coordinate(at.x), cy = coordinate(at.y), cz = coordinate(at.z);
+    template <class F>
+    void near(const Cells& cells, const std::vector<Vec3d>& points, Vec3d at, F f) const {
+        const int n = perSide(), cx = coordinate(at.x), cy = coordinate(at.y),
+                  cz = coordinate(at.z);
         for (int z = std::max(0, cz - 1); z <= std::min(n - 1, cz + 1); ++z)
             for (int y = std::max(0, cy - 1); y <= std::min(n - 1, cy + 1); ++y)
                 for (int x_ = std::max(0, cx - 1); x_ <= std::min(n - 1, cx + 1); ++x_)

@@ -11,7 +11,9 @@ namespace spindrift {
 namespace {
 
 // After 300 steps of the original program, by its sources.
-struct Original { double height, kineticEnergy, meanDensity; };   // m, J, kg/m^3
+struct Original {
+    double height, kineticEnergy, meanDensity;
+};  // m, J, kg/m^3
 
 Original figuresOf(const reference::Classic& r) {
     return {r.centerOfMass().y, r.kineticEnergy(), r.meanDensity()};
@@ -43,9 +45,12 @@ void expectSameFlow(const std::string& file, int steps) {
         largestEnergy = std::max(largestEnergy, reference.kineticEnergy());
         if (k % 20 != 19) continue;
         const Measurement m = simulation->measure();
-        EXPECT_NEAR(m.meanDensity, reference.meanDensity(), 0.01 * reference.meanDensity()) << file << " step " << k;
-        EXPECT_NEAR(m.kineticEnergy, reference.kineticEnergy(), 0.01 * largestEnergy) << file << " step " << k;
-        EXPECT_LT(length(m.centerOfMass - reference.centerOfMass()), 0.01 * length(reference.centerOfMass()))
+        EXPECT_NEAR(m.meanDensity, reference.meanDensity(), 0.01 * reference.meanDensity())
+            << file << " step " << k;
+        EXPECT_NEAR(m.kineticEnergy, reference.kineticEnergy(), 0.01 * largestEnergy)
+            << file << " step " << k;
+        EXPECT_LT(length(m.centerOfMass - reference.centerOfMass()),
+                  0.01 * length(reference.centerOfMass()))
             << file << " step " << k;
     }
     EXPECT_GT(largestEnergy, 0);
@@ -83,7 +88,8 @@ TEST(Classic, ReferenceAndProgramFollowTheOriginal) {
     expectNear(original, program);
 }
 
-// In double precision the same source follows the reference particle by particle until chaos sets in.
+// In double precision the same source follows the reference particle by particle until chaos sets
+// in.
 TEST(Classic, DoubleInstanceFollowsReferenceParticleByParticle) {
     Scene scene = historical("1.json");
     scene.compute.precision = Precision::Double;

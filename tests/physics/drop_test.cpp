@@ -11,14 +11,17 @@ namespace {
 
 constexpr double Radius = 0.1, Tension = 1, Density = 1000;
 
-Scene drop(int dimensions, double particles, float speed) {   // particles: along a radius; speed: of stretching at its end, m/s
+Scene drop(int dimensions, double particles,
+           float speed) {  // particles: along a radius; speed: of stretching at its end, m/s
     Scene s;
     s.compute.backend = Backend::Cpu;
-    s.simulation.formulation = Formulation::DeltaPlus, s.simulation.dimensions = dimensions, s.simulation.placement = StartPlaces::Relaxed;
+    s.simulation.formulation = Formulation::DeltaPlus, s.simulation.dimensions = dimensions,
+    s.simulation.placement = StartPlaces::Relaxed;
     s.simulation.spacing = float(Radius / particles), s.simulation.gravity = {0, 0, 0};
     s.domain.max = {0.4f, 0.4f, dimensions == 3 ? 0.4f : 0.1f};
     s.walls.kind = WallKind::Reflect;
-    s.fluid.viscosity = 0, s.fluid.artificialViscosity = 0.02f, s.fluid.surfaceTension = float(Tension);
+    s.fluid.viscosity = 0, s.fluid.artificialViscosity = 0.02f,
+    s.fluid.surfaceTension = float(Tension);
     Body& body = s.fluid.bodies[0];
     body.shape = dimensions == 3 ? Shape::Sphere : Shape::Cylinder, body.axis = Axis::Z;
     body.center = 0.5f * s.domain.max, body.radius = float(Radius), body.height = 0.1f;
@@ -26,8 +29,12 @@ Scene drop(int dimensions, double particles, float speed) {   // particles: alon
     return s;
 }
 
-// Second moments about the middle: along x less along y, and the radius that a disc has of them; the farthest particle.
-struct Shape2 { Vec3d middle; double stretch, radius, farthest; };
+// Second moments about the middle: along x less along y, and the radius that a disc has of them;
+// the farthest particle.
+struct Shape2 {
+    Vec3d middle;
+    double stretch, radius, farthest;
+};
 Shape2 shapeOf(const std::vector<Particle>& particles) {
     const double each = 1 / double(particles.size());
     Vec3d middle{};
@@ -43,16 +50,22 @@ Shape2 shapeOf(const std::vector<Particle>& particles) {
 
 // Rayleigh 1879: omega^2 = 8 sigma / (rho r^3), in two dimensions 6.
 void expectRayleighsPeriod(int dimensions, double particles) {
-    const double period = 2 * std::numbers::pi / std::sqrt((dimensions == 3 ? 8 : 6) * Tension / (Density * std::pow(Radius, 3)));
+    const double period =
+        2 * std::numbers::pi /
+        std::sqrt((dimensions == 3 ? 8 : 6) * Tension / (Density * std::pow(Radius, 3)));
     const auto simulation = makeSimulation(drop(dimensions, particles, 0.04f));
     double before = 0, last = 0, half = 0;
     while (half == 0 && last < period) {
         simulation->step(20);
-        const double now = simulation->clock().time, stretch = shapeOf(simulation->particles()).stretch;
-        if (now > period / 8 && stretch < 0) half = last + (now - last) * before / (before - stretch);   // back at the circle
+        const double now = simulation->clock().time,
+                     stretch = shapeOf(simulation->particles()).stretch;
+        if (now > period / 8 && stretch < 0)
+            half = last + (now - last) * before / (before - stretch);  // back at the circle
         before = stretch, last = now;
     }
-    std::printf("drop, %d dimensions, %g particles along the radius: period %.4f s, Rayleigh's %.4f s\n", dimensions, particles, 2 * half, period);
+    std::printf(
+        "drop, %d dimensions, %g particles along the radius: period %.4f s, Rayleigh's %.4f s\n",
+        dimensions, particles, 2 * half, period);
     EXPECT_NEAR(2 * half, period, 0.08 * period);
 }
 TEST(Drop, SwingsWithRayleighsPeriod) {
@@ -64,7 +77,7 @@ TEST(Drop, IsRoundAndPressesAsLaplaceSays) {
     Scene s = drop(2, 15, 0);
     Body& body = s.fluid.bodies[0];
     body = {};
-    body.min = {0.12f, 0.12f, 0}, body.max = {0.28f, 0.28f, 0.1f};   // a square becomes round
+    body.min = {0.12f, 0.12f, 0}, body.max = {0.28f, 0.28f, 0.1f};  // a square becomes round
     s.fluid.viscosity = 5;
     const auto simulation = makeSimulation(s);
     while (simulation->clock().time < 4) simulation->step(50);
@@ -72,15 +85,19 @@ TEST(Drop, IsRoundAndPressesAsLaplaceSays) {
     const Shape2 shape = shapeOf(particles);
     double pressure = 0, inside = 0;
     for (const Particle& p : particles)
-        if (length(p.position - shape.middle) < shape.radius - supportRadius(s)) pressure += p.pressure, ++inside;
+        if (length(p.position - shape.middle) < shape.radius - supportRadius(s))
+            pressure += p.pressure, ++inside;
     pressure /= inside;
-    std::printf("drop: mean pressure inside %.2f Pa, Laplace's %.2f Pa; radius %.4f m, farthest %.4f m\n", pressure, Tension / shape.radius, shape.radius,
-                shape.farthest + s.simulation.spacing / 2);
+    std::printf(
+        "drop: mean pressure inside %.2f Pa, Laplace's %.2f Pa; radius %.4f m, farthest %.4f m\n",
+        pressure, Tension / shape.radius, shape.radius, shape.farthest + s.simulation.spacing / 2);
     EXPECT_NEAR(pressure, Tension / shape.radius, 0.25 * Tension / shape.radius);
     EXPECT_LT(std::abs(shape.stretch), 0.03 * shape.radius * shape.radius);
-    EXPECT_LT(shape.farthest + s.simulation.spacing / 2, 1.06 * shape.radius);   // a square's corners: 1.2
+    EXPECT_LT(shape.farthest + s.simulation.spacing / 2,
+              1.06 * shape.radius);  // a square's corners: 1.2
     EXPECT_LT(simulation->measure().maxSpeed, 0.05);
-    EXPECT_LT(length(shape.middle - Vec3d{0.2, 0.2, 0.05}), 0.7 * Radius);   // its forces don't quite cancel
+    EXPECT_LT(length(shape.middle - Vec3d{0.2, 0.2, 0.05}),
+              0.7 * Radius);  // its forces don't quite cancel
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Solids that float: what fluid gives them it loses, they weigh what they should, fall, tumble and slide as mechanics says, and the mouse can drag them.
+// Solids that float: what fluid gives them it loses, they weigh what they should, fall, tumble and
+// slide as mechanics says, and the mouse can drag them.
 #include "physics/cube.h"
 #include "scene/mass.h"
 #include "sim/simulation.h"
@@ -27,9 +28,11 @@ SolidMeasurement solidAfter(Simulation& simulation, int steps) {
 // A cube of half density: its middle comes to rest where the water's level is then.
 TEST(Floating, CubeOfHalfDensityIsHalfSubmerged) {
     for (const char* formulation : {"wcsph", "delta_sph"}) {
-        const Scene scene = sceneOf({std::string("simulation.formulation=") + formulation, "domain.max=0.4,0.4,0.4", "simulation.spacing=0.02", "time.mode=cfl",
-                                     "fluid.dissipation=1", R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.4,0.2,0.4]}])",
-                                     R"(solids=[{"shape":"block","min":[0.14,0.18,0.14],"max":[0.26,0.30,0.26],"density":500}])"});
+        const Scene scene = sceneOf(
+            {std::string("simulation.formulation=") + formulation, "domain.max=0.4,0.4,0.4",
+             "simulation.spacing=0.02", "time.mode=cfl", "fluid.dissipation=1",
+             R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.4,0.2,0.4]}])",
+             R"(solids=[{"shape":"block","min":[0.14,0.18,0.14],"max":[0.26,0.30,0.26],"density":500}])"});
         auto simulation = makeSimulation(scene);
         simulation->stopAt(2.0);
         while (simulation->clock().time < 2.0) simulation->step(50);
@@ -39,14 +42,19 @@ TEST(Floating, CubeOfHalfDensityIsHalfSubmerged) {
     }
 }
 
-// Fluid runs into a solid, all alone in space: nothing of the momentum of both is lost, nor of the angular momentum but for where pairs are viscous.
+// Fluid runs into a solid, all alone in space: nothing of the momentum of both is lost, nor of the
+// angular momentum but for where pairs are viscous.
 TEST(Floating, FluidAndSolidKeepTheirMomentum) {
-    const std::pair<const char*, const char*> pairs[] = {{"wcsph", "symplectic_euler"}, {"delta_sph", "predictor_corrector"}};
+    const std::pair<const char*, const char*> pairs[] = {{"wcsph", "symplectic_euler"},
+                                                         {"delta_sph", "predictor_corrector"}};
     for (const auto& [formulation, integrator] : pairs) {
-        const Scene scene = sceneOf({std::string("simulation.formulation=") + formulation, std::string("time.integrator=") + integrator, "simulation.gravity=0,0,0",
-                                     "walls.kind=reflect", "time.mode=cfl", "domain.min=-1,-1,-1", "domain.max=6,5,5", "fluid.viscosity=1", "compute.precision=double",
-                                     R"(fluid.bodies=[{"shape":"block","min":[1.5,1.8,1.8],"max":[1.9,2.2,2.2],"velocity":[1,0,0]}])",
-                                     R"(solids=[{"shape":"block","min":[2,1.9,1.7],"max":[2.3,2.4,2.2],"density":700}])"});
+        const Scene scene = sceneOf(
+            {std::string("simulation.formulation=") + formulation,
+             std::string("time.integrator=") + integrator, "simulation.gravity=0,0,0",
+             "walls.kind=reflect", "time.mode=cfl", "domain.min=-1,-1,-1", "domain.max=6,5,5",
+             "fluid.viscosity=1", "compute.precision=double",
+             R"(fluid.bodies=[{"shape":"block","min":[1.5,1.8,1.8],"max":[1.9,2.2,2.2],"velocity":[1,0,0]}])",
+             R"(solids=[{"shape":"block","min":[2,1.9,1.7],"max":[2.3,2.4,2.2],"density":700}])"});
         auto simulation = makeSimulation(scene);
         const double mass = massOf(scene, scene.solids[0]).mass;
         auto momentum = [&] {
@@ -57,16 +65,17 @@ TEST(Floating, FluidAndSolidKeepTheirMomentum) {
         simulation->step(1000);
         EXPECT_GT(mass * simulation->measure().solids[0].velocity.x, 5) << "it was hit";
         EXPECT_GT(length(simulation->measure().solids[0].spin), 0.05) << "beside its middle";
-        EXPECT_LT(length(momentum() - before) / length(before), 1e-5) << formulation << " " << integrator;
+        EXPECT_LT(length(momentum() - before) / length(before), 1e-5)
+            << formulation << " " << integrator;
     }
 }
 
 // What lies on the floor of a tank, or beside its wall, and how far up it is after a while. Gravity
 // grows, so that the water does not fall first.
 struct Submerged {
-    std::string form;   // of the solid, about (0.2, y, 0.2)
+    std::string form;  // of the solid, about (0.2, y, 0.2)
     double density;
-    int dimensions, across;   // spacings in 0.1 m
+    int dimensions, across;  // spacings in 0.1 m
     std::string formulation = "wcsph";
 };
 void runUntil(Simulation& simulation, double time) {
@@ -77,9 +86,12 @@ std::unique_ptr<Simulation> tankWith(const Submerged& s) {
     Scene scene;
     scene.compute.backend = Backend::Cpu;
     const std::string knobs[] = {
-        "simulation.formulation=" + s.formulation, "simulation.dimensions=" + std::to_string(s.dimensions),
-        "simulation.spacing=" + std::to_string(0.1 / s.across), "simulation.gravity_ramp=0.1",
-        "domain.max=0.4,0.5,0.4", "fluid.dissipation=1",
+        "simulation.formulation=" + s.formulation,
+        "simulation.dimensions=" + std::to_string(s.dimensions),
+        "simulation.spacing=" + std::to_string(0.1 / s.across),
+        "simulation.gravity_ramp=0.1",
+        "domain.max=0.4,0.5,0.4",
+        "fluid.dissipation=1",
         R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.4,0.4,0.4]}])",
         "solids=[{" + s.form + ",\"density\":" + std::to_string(s.density) + "}]"};
     for (const std::string& knob : knobs) setKnob(scene, knob);
@@ -101,16 +113,21 @@ TEST(Floating, LightBallsRiseFromTheFloorAndOffWalls) {
     for (const std::string& form : {OnTheFloor, BesideTheWall})
         for (int across : {3, 4, 6, 8})
             for (double density : {100.0, 500.0, 900.0})
-                EXPECT_GT(rise({form, density, 2, across}), 0.004) << form << density << " " << across;
+                EXPECT_GT(rise({form, density, 2, across}), 0.004)
+                    << form << density << " " << across;
     for (const std::string formulation : {"wcsph", "delta_sph"})
         for (int across : {3, 4})
-            EXPECT_GT(rise({OnTheFloor, 900, 3, across, formulation}), 0.01) << formulation << across;
+            EXPECT_GT(rise({OnTheFloor, 900, 3, across, formulation}), 0.01)
+                << formulation << across;
 }
 
 // Heavier ones stay where they are, and the water carries what it should of them: the weight of the
 // water that they displace, though there is none below them.
 TEST(Floating, HeavySolidsOnTheFloorFeelTheirBuoyancy) {
-    struct Case { std::string form; double height, volume, area; };
+    struct Case {
+        std::string form;
+        double height, volume, area;
+    };
     const Case cases[] = {
         {R"("shape":"block","min":[0.1,0,0.1],"max":[0.3,0.2,0.3])", 0.1, 0.008, 0.04},
         {R"("shape":"wedge","min":[0.1,0,0.1],"max":[0.3,0.1,0.3])", 0.05, 0.002, 0.01},
@@ -130,49 +147,62 @@ TEST(Floating, HeavySolidsOnTheFloorFeelTheirBuoyancy) {
 }
 
 TEST(Floating, FallsAndTumblesFreely) {
-    Scene scene = sceneOf({"walls.kind=reflect", R"(solids=[{"shape":"block","min":[0.4,0.7,0.4],"max":[0.6,0.9,0.7],"density":2000,"velocity":[0.5,0,0],"spin":360,"spin_axis":"y"}])"});
+    Scene scene = sceneOf(
+        {"walls.kind=reflect",
+         R"(solids=[{"shape":"block","min":[0.4,0.7,0.4],"max":[0.6,0.9,0.7],"density":2000,"velocity":[0.5,0,0],"spin":360,"spin_axis":"y"}])"});
     auto simulation = makeSimulation(scene);
     const SolidMeasurement s = solidAfter(*simulation, 400);
     EXPECT_NEAR(s.position.y, 0.8 - 0.5 * 9.81 * 0.04, 0.001);
     EXPECT_NEAR(s.position.x, 0.6, 1e-5);
     EXPECT_NEAR(s.spin.y, 2 * std::numbers::pi, 1e-5);
     // The vertices show the turn: 72 degrees after 0.2 s.
-    std::vector<Vertex> now(size_t(simulation->fluidCount() + simulation->solidParticleCount())), start = now;
-    makeSimulation(scene)->writeVertices({start.data()}, ColorBy::Plain, simulation->solidParticleCount());
+    std::vector<Vertex> now(size_t(simulation->fluidCount() + simulation->solidParticleCount())),
+        start = now;
+    makeSimulation(scene)->writeVertices({start.data()}, ColorBy::Plain,
+                                         simulation->solidParticleCount());
     simulation->writeVertices({now.data()}, ColorBy::Plain, simulation->solidParticleCount());
-    const Vertex &a = start[size_t(simulation->fluidCount())], &b = now[size_t(simulation->fluidCount())];
+    const Vertex &a = start[size_t(simulation->fluidCount())],
+                 &b = now[size_t(simulation->fluidCount())];
     const double angle = 0.4 * std::numbers::pi, x = a.x - 0.5, z = a.z - 0.55;
     EXPECT_NEAR(b.x - s.position.x, x * std::cos(angle) + z * std::sin(angle), 1e-4);
     EXPECT_NEAR(b.z - s.position.z, z * std::cos(angle) - x * std::sin(angle), 1e-4);
 }
 
-// A top that turns about no axis of its own: its axis goes round the angular momentum at L / I (Euler), and its energy stays.
+// A top that turns about no axis of its own: its axis goes round the angular momentum at L / I
+// (Euler), and its energy stays.
 TEST(Floating, TopPrecesses) {
-    Scene scene = sceneOf({"walls.kind=reflect", "simulation.gravity=0,0,0", R"(solids=[{"shape":"cylinder","axis":"z","center":[0.5,0.5,0.5],"radius":0.15,"height":0.1,"density":1000}])"});
+    Scene scene = sceneOf(
+        {"walls.kind=reflect", "simulation.gravity=0,0,0",
+         R"(solids=[{"shape":"cylinder","axis":"z","center":[0.5,0.5,0.5],"radius":0.15,"height":0.1,"density":1000}])"});
     const Mass mass = massOf(scene, scene.solids[0]);
     auto simulation = makeSimulation(scene);
     RunState state = simulation->state();
     const Vec3d momentum = mass.inertia[2].z * Vec3d{0, 0, 8} + mass.inertia[0].x * Vec3d{2, 0, 0};
     state.solids[0].angularMomentum = momentum;
     simulation->restart(state);
-    const double rate = length(momentum) / mass.inertia[0].x, turn = 0.5 * std::numbers::pi;   // a quarter of a precession
+    const double rate = length(momentum) / mass.inertia[0].x,
+                 turn = 0.5 * std::numbers::pi;  // a quarter of a precession
     const SolidMeasurement s = solidAfter(*simulation, int(std::round(turn / rate / 0.0005)));
     const Vec3d along = (1 / length(momentum)) * momentum, axis{0, 0, 1};
     const double share = dot(axis, along);
-    const Vec3d expected = share * along + cross(along, axis);   // Rodrigues, by 90 degrees
+    const Vec3d expected = share * along + cross(along, axis);  // Rodrigues, by 90 degrees
     const SolidMotion now = simulation->state().solids[0];
     const double w = now.turn[0], x = now.turn[1], y = now.turn[2], z = now.turn[3];
-    EXPECT_LT(length(Vec3d{2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)} - expected), 0.01);
+    EXPECT_LT(
+        length(Vec3d{2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)} - expected),
+        0.01);
     EXPECT_LT(length(now.angularMomentum - momentum), 1e-9);
-    EXPECT_NEAR(dot(s.spin, momentum), mass.inertia[2].z * 64 + mass.inertia[0].x * 4, 0.01 * mass.inertia[2].z * 64);   // twice its energy
+    EXPECT_NEAR(dot(s.spin, momentum), mass.inertia[2].z * 64 + mass.inertia[0].x * 4,
+                0.01 * mass.inertia[2].z * 64);  // twice its energy
 }
 
 // A block slides to a halt after v^2 / (2 mu g), and stays upright and on the floor.
 TEST(Floating, BlockSlidesToAHalt) {
-    const Scene scene = sceneOf({"walls.kind=reflect", "domain.max=3,1,1",
-                                 R"(solids=[{"shape":"block","min":[0.4,0,0.4],"max":[0.8,0.2,0.7],"density":1000,"velocity":[2,0,0],"friction":0.4}])"});
+    const Scene scene = sceneOf(
+        {"walls.kind=reflect", "domain.max=3,1,1",
+         R"(solids=[{"shape":"block","min":[0.4,0,0.4],"max":[0.8,0.2,0.7],"density":1000,"velocity":[2,0,0],"friction":0.4}])"});
     auto simulation = makeSimulation(scene);
-    const SolidMeasurement s = solidAfter(*simulation, 1600);   // it takes 0.51 s
+    const SolidMeasurement s = solidAfter(*simulation, 1600);  // it takes 0.51 s
     EXPECT_NEAR(s.position.x, 0.6 + 4 / (2 * 0.4 * 9.81), 0.01);
     EXPECT_NEAR(s.position.y, 0.1, 0.001);
     EXPECT_LT(length(s.velocity) + length(s.spin), 0.005);
@@ -180,39 +210,48 @@ TEST(Floating, BlockSlidesToAHalt) {
 
 // Springs go with the step, which may become longer while the run goes on.
 TEST(Floating, BlockStaysOnTheFloorWhenStepsBecomeLonger) {
-    Scene scene = sceneOf({"walls.kind=reflect", R"(solids=[{"shape":"block","min":[0.4,0,0.4],"max":[0.8,0.2,0.7],"density":1000}])"});
+    Scene scene = sceneOf(
+        {"walls.kind=reflect",
+         R"(solids=[{"shape":"block","min":[0.4,0,0.4],"max":[0.8,0.2,0.7],"density":1000}])"});
     auto simulation = makeSimulation(scene);
     simulation->step(200);
     scene.time.step = 0.01f;
     simulation->apply(scene);
     const SolidMeasurement s = solidAfter(*simulation, 100);
-    EXPECT_NEAR(s.position.y, 0.1, 0.03);   // softer by the square of twenty
+    EXPECT_NEAR(s.position.y, 0.1, 0.03);  // softer by the square of twenty
     EXPECT_LT(length(s.velocity) + length(s.spin), 0.01);
 }
 
 // Solids that meet: momentum is kept, and a stack of them stands.
 TEST(Floating, SolidsPushEachOther) {
-    Scene scene = sceneOf({"walls.kind=reflect", "simulation.gravity=0,0,0", "walls.restitution=1",
-                           R"(solids=[{"shape":"block","min":[0.2,0.4,0.4],"max":[0.4,0.6,0.6],"density":1000,"velocity":[1,0,0],"friction":0},)"
-                           R"({"shape":"block","min":[0.5,0.4,0.4],"max":[0.7,0.6,0.6],"density":1000,"friction":0}])"});
+    Scene scene = sceneOf(
+        {"walls.kind=reflect", "simulation.gravity=0,0,0", "walls.restitution=1",
+         R"(solids=[{"shape":"block","min":[0.2,0.4,0.4],"max":[0.4,0.6,0.6],"density":1000,"velocity":[1,0,0],"friction":0},)"
+         R"({"shape":"block","min":[0.5,0.4,0.4],"max":[0.7,0.6,0.6],"density":1000,"friction":0}])"});
     auto simulation = makeSimulation(scene);
     simulation->step(500);
     const Measurement m = simulation->measure();
     EXPECT_NEAR(m.solids[0].velocity.x + m.solids[1].velocity.x, 1, 1e-4);
-    EXPECT_NEAR(m.solids[1].velocity.x, 1, 0.05);   // all of it: as heavy, and elastic
-    scene = sceneOf({"walls.kind=reflect", R"(solids=[{"shape":"block","min":[0.4,0,0.4],"max":[0.7,0.2,0.7],"density":500},)"
-                     R"({"shape":"block","min":[0.45,0.2,0.45],"max":[0.65,0.35,0.65],"density":3000}])"});
+    EXPECT_NEAR(m.solids[1].velocity.x, 1, 0.05);  // all of it: as heavy, and elastic
+    scene = sceneOf(
+        {"walls.kind=reflect",
+         R"(solids=[{"shape":"block","min":[0.4,0,0.4],"max":[0.7,0.2,0.7],"density":500},)"
+         R"({"shape":"block","min":[0.45,0.2,0.45],"max":[0.65,0.35,0.65],"density":3000}])"});
     simulation = makeSimulation(scene);
     simulation->step(1000);
     EXPECT_NEAR(simulation->measure().solids[1].position.y, 0.275, 0.003);
     EXPECT_LT(length(simulation->measure().solids[1].velocity), 0.005);
 }
 
-// What the mouse holds comes to where it is wanted, floating or not, and a run that goes on knows where it was left.
+// What the mouse holds comes to where it is wanted, floating or not, and a run that goes on knows
+// where it was left.
 TEST(Floating, MouseDragsThem) {
     for (const char* density : {"0", "800"}) {
-        const Scene scene = sceneOf({"time.mode=cfl", R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[1,0.4,1]}])",
-                                     std::string(R"(solids=[{"shape":"sphere","center":[0.3,0.3,0.5],"radius":0.12,"density":)") + density + "}]"});
+        const Scene scene = sceneOf(
+            {"time.mode=cfl", R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[1,0.4,1]}])",
+             std::string(
+                 R"(solids=[{"shape":"sphere","center":[0.3,0.3,0.5],"radius":0.12,"density":)") +
+                 density + "}]"});
         auto simulation = makeSimulation(scene);
         simulation->step(20);
         simulation->hold({0, {0.7f, 0.3f, 0.5f}});
@@ -220,10 +259,12 @@ TEST(Floating, MouseDragsThem) {
         while (simulation->clock().time < 1.5) simulation->step(20);
         const Vec3d middle = simulation->measure().solids[0].position;
         EXPECT_NEAR(middle.x, 0.7, 0.02) << density;
-        for (const Particle& p : simulation->particles()) EXPECT_GT(length(p.position - middle), 0.12 - 1e-3);
+        for (const Particle& p : simulation->particles())
+            EXPECT_GT(length(p.position - middle), 0.12 - 1e-3);
         simulation->hold({});
         const RunState left = simulation->state();
-        EXPECT_NEAR(makeSimulation(scene, left)->measure().solids[0].position.x, middle.x, 1e-5) << density;
+        EXPECT_NEAR(makeSimulation(scene, left)->measure().solids[0].position.x, middle.x, 1e-5)
+            << density;
         simulation->step(50);
         if (scene.solids[0].density == 0) {
             EXPECT_NEAR(simulation->measure().solids[0].position.x, middle.x, 1e-6);
@@ -231,11 +272,13 @@ TEST(Floating, MouseDragsThem) {
     }
 }
 
-// A plate that the mouse takes from its keyframes stays where it is left, also in a run that goes on;
-// one that turns on and on turns there.
+// A plate that the mouse takes from its keyframes stays where it is left, also in a run that goes
+// on; one that turns on and on turns there.
 TEST(Floating, WhatIsDraggedLeavesItsKeyframes) {
     for (const char* motion : {R"("keyframes":[[0,0,0,0],[1,0.5,0,0]])", R"("spin":360)"}) {
-        const Scene scene = sceneOf({std::string(R"(solids=[{"shape":"block","min":[0.1,0.4,0.4],"max":[0.2,0.6,0.6],)") + motion + "}]"});
+        const Scene scene = sceneOf(
+            {std::string(R"(solids=[{"shape":"block","min":[0.1,0.4,0.4],"max":[0.2,0.6,0.6],)") +
+             motion + "}]"});
         auto simulation = makeSimulation(scene);
         runUntil(*simulation, 0.1);
         simulation->hold({0, {0.4f, 0.5f, 0.5f}});
@@ -249,14 +292,16 @@ TEST(Floating, WhatIsDraggedLeavesItsKeyframes) {
             const SolidMeasurement solid = s->measure().solids[0];
             EXPECT_NEAR(solid.position.x, 0.4, 0.01) << motion;
             EXPECT_EQ(length(solid.velocity), 0) << motion;
-            EXPECT_EQ(length(solid.spin) > 0, std::string(motion).find("spin") != std::string::npos);
+            EXPECT_EQ(length(solid.spin) > 0,
+                      std::string(motion).find("spin") != std::string::npos);
         }
     }
 }
 
 TEST(Floating, MassesAreThoseOfTheShapes) {
     auto massOfSolid = [](const std::string& solid, int dimensions = 3) {
-        Scene scene = sceneOf({"solids=[" + solid + "]", "simulation.dimensions=" + std::to_string(dimensions)});
+        Scene scene = sceneOf(
+            {"solids=[" + solid + "]", "simulation.dimensions=" + std::to_string(dimensions)});
         return massOf(scene, scene.solids[0]);
     };
     Mass m = massOfSolid(R"({"shape":"block","min":[0,0,0],"max":[1,2,3],"density":10})");
@@ -284,7 +329,7 @@ TEST(Floating, MassesAreThoseOfTheShapes) {
     EXPECT_NEAR(0.5 + m.centre.y, moment / mass, 0.003);
     EXPECT_NEAR(m.inertia[2].z, xx + yy - moment * moment / mass, 0.005);
     m = massOfSolid(R"({"shape":"sphere","radius":0.5,"density":1000})", 2);
-    EXPECT_NEAR(m.mass, 1000 * std::numbers::pi * 0.25, 1e-3);   // of a metre of depth
+    EXPECT_NEAR(m.mass, 1000 * std::numbers::pi * 0.25, 1e-3);  // of a metre of depth
     EXPECT_NEAR(m.inertia[2].z, 0.5 * m.mass * 0.25, 1e-4);
 }
 

@@ -1,5 +1,6 @@
-// Flow between plates, driven by a body force from rest, against the series of Poiseuille flow: the first test of two
-// dimensions, a periodic axis, viscosity and walls that fluid sticks to, together.
+// Flow between plates, driven by a body force from rest, against the series of Poiseuille flow: the
+// first test of two dimensions, a periodic axis, viscosity and walls that fluid sticks to,
+// together.
 #include "scene/json.h"
 #include "sim/simulation.h"
 
@@ -10,7 +11,9 @@
 namespace spindrift {
 namespace {
 
-struct Errors { double l2 = 0, across = 0; };   // of the velocity, relative; largest velocity across the plates, m/s
+struct Errors {
+    double l2 = 0, across = 0;
+};  // of the velocity, relative; largest velocity across the plates, m/s
 
 // u(y, t) for plates at 0 and 1 m, F = 0.8 m/s^2, nu = 0.1 m^2/s (Morris 1997, eq. 21).
 double exact(double y, double t) {
@@ -45,7 +48,8 @@ Errors errorsAt(double time, int particlesAcross) {
 
 TEST(Poiseuille, StartingFlowConvergesInSecondOrder) {
     const Errors coarse = errorsAt(0.5, 20), fine = errorsAt(0.5, 40);
-    std::printf("L2 %.2f %% at 20, %.2f %% at 40 particles across\n", 100 * coarse.l2, 100 * fine.l2);
+    std::printf("L2 %.2f %% at 20, %.2f %% at 40 particles across\n", 100 * coarse.l2,
+                100 * fine.l2);
     EXPECT_LT(coarse.l2, 0.01);
     EXPECT_LT(fine.l2, 0.003);
     EXPECT_GT(std::log2(coarse.l2 / fine.l2), 1.5);

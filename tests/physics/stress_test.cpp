@@ -51,7 +51,7 @@ TEST(RandomScenes, AreTheSameForTheSameSeed) {
 
 // Half as long again is sound too; and the search does find where it ends.
 TEST(StabilityMaps, TheAutomaticStepLiesInside) {
-    for (const char* scene : {"drop impact"})   // `spindrift stress --full` has the others
+    for (const char* scene : {"drop impact"})  // `spindrift stress --full` has the others
         for (const StabilityRow& row : stabilityMap(scene, "", "time.step").rows) {
             EXPECT_TRUE(row.usualIsSound) << scene << ", " << row.formulation;
             EXPECT_EQ(row.low, row.least) << scene << ", " << row.formulation;
@@ -60,7 +60,17 @@ TEST(StabilityMaps, TheAutomaticStepLiesInside) {
         }
 }
 TEST(StabilityMaps, AreDrawnRowByRow) {
-    StabilityMap map{"pool", {{"wcsph", "time.cfl", "", 0.4, 0.1, 4, 0.1, 2, true, {{0.4, Verdict::Sound}, {4, Verdict::Broken}}}}};
+    StabilityMap map{"pool",
+                     {{"wcsph",
+                       "time.cfl",
+                       "",
+                       0.4,
+                       0.1,
+                       4,
+                       0.1,
+                       2,
+                       true,
+                       {{0.4, Verdict::Sound}, {4, Verdict::Broken}}}}};
     const std::string text = svg(map);
     EXPECT_NE(text.find(">wcsph time.cfl<"), std::string::npos);
     EXPECT_EQ(text.find("nan"), std::string::npos);
@@ -76,7 +86,7 @@ TEST(StressCriteria, NoticeEnergyFromNothing) {
     for (const StressCase& c : tortures(false)) {
         if (c.name != "wcsph: gravity tilted and turned") continue;
         StressCase blind = c;
-        blind.energyIsConserved = true;   // it isn't: somebody tilts the box
+        blind.energyIsConserved = true;  // it isn't: somebody tilts the box
         const StressResult r = stress(blind);
         EXPECT_EQ(int(r.verdict), int(Verdict::Broken));
         EXPECT_NE(r.what.find("energy from nothing"), std::string::npos) << r.what;

@@ -9,7 +9,8 @@ namespace spindrift {
 namespace {
 
 constexpr int width = 640, height = 480;
-// Pixels in which two spheres may be equally deep to the last bit: there the one that is drawn first is seen.
+// Pixels in which two spheres may be equally deep to the last bit: there the one that is drawn
+// first is seen.
 constexpr int ties = 3;
 
 // A block of overlapping spheres, not quite on a lattice, so that no two are equally deep.
@@ -20,7 +21,8 @@ std::vector<Vertex> block(float shift = 0) {
         const auto place = [&](int k, int salt) {
             return (float(k) + 0.5f + 0.2f * float((i * salt) % 97) / 97) / n;
         };
-        spheres.push_back({place(i % n, 31) + shift, place(i / n % n, 57), place(i / (n * n), 71), float(i % 7) / 7});
+        spheres.push_back({place(i % n, 31) + shift, place(i / n % n, 57), place(i / (n * n), 71),
+                           float(i % 7) / 7});
     }
     return spheres;
 }
@@ -32,12 +34,14 @@ DrawSettings settingsOf(float yaw, float pitch) {
     return settings;
 }
 
-Image nextPicture(const std::vector<Vertex>& spheres, const DrawSettings& settings, int samples = 4) {
+Image nextPicture(const std::vector<Vertex>& spheres, const DrawSettings& settings,
+                  int samples = 4) {
     return picture(spheres, settings, samples, width, height);
 }
 // What a renderer draws that has drawn nothing before, which leaves nothing out.
-Image firstPicture(const std::vector<Vertex>& spheres, const DrawSettings& settings, int samples = 4) {
-    rendererOf(width, height, samples);   // makes the context
+Image firstPicture(const std::vector<Vertex>& spheres, const DrawSettings& settings,
+                   int samples = 4) {
+    rendererOf(width, height, samples);  // makes the context
     Renderer renderer(width, height, samples);
     return pictureBy(renderer, spheres, settings);
 }
@@ -46,13 +50,22 @@ TEST(Occlusion, NoPictureShowsWhatTheOneBeforeItWas) {
     for (int samples : {1, 4}) {
         for (float yaw : {20.0f, 23.0f, 200.0f}) {
             const DrawSettings settings = settingsOf(yaw, 25);
-            EXPECT_LE(changed(nextPicture(block(), settings, samples), firstPicture(block(), settings, samples), 0), ties) << samples << ' ' << yaw;
+            EXPECT_LE(changed(nextPicture(block(), settings, samples),
+                              firstPicture(block(), settings, samples), 0),
+                      ties)
+                << samples << ' ' << yaw;
         }
         // What hid the others is gone, or has moved aside.
         DrawSettings few = settingsOf(200, 25);
         few.fluidCount = 3000;
-        EXPECT_LE(changed(nextPicture(block(), few, samples), firstPicture(block(), few, samples), 0), ties) << samples;
-        EXPECT_LE(changed(nextPicture(block(0.3f), few, samples), firstPicture(block(0.3f), few, samples), 0), ties) << samples;
+        EXPECT_LE(
+            changed(nextPicture(block(), few, samples), firstPicture(block(), few, samples), 0),
+            ties)
+            << samples;
+        EXPECT_LE(changed(nextPicture(block(0.3f), few, samples),
+                          firstPicture(block(0.3f), few, samples), 0),
+                  ties)
+            << samples;
     }
 }
 
@@ -84,8 +97,10 @@ TEST(Occlusion, LeavesOutMostOfAFullBlock) {
     DrawSettings empty = settings;
     empty.fluidCount = 0;
     pixelsLit(settings);
-    const double known = pixelsLit(settings), none = pixelsLit(empty), unknown = pixelsLit(settings);
-    std::printf("fragments without particles %.0f, with %.0f, and %.0f when nothing was known\n", none, known, unknown);
+    const double known = pixelsLit(settings), none = pixelsLit(empty),
+                 unknown = pixelsLit(settings);
+    std::printf("fragments without particles %.0f, with %.0f, and %.0f when nothing was known\n",
+                none, known, unknown);
     EXPECT_LT(known - none, 0.5 * (unknown - none));
 }
 

@@ -68,12 +68,14 @@ TEST(Snapshot, EveryChangeThatShouldBeSeenIsSeen) {
 
 TEST(Snapshot, BoundaryParticlesShowOnlyWhenAsked) {
     DrawSettings settings = frontView(1);
-    const std::vector<Vertex> wall = {{0.3f, 0.5f, 0.5f, 1}, {0.7f, 0.5f, 0.5f, 0}}, solid = {wall[0], {0.7f, 0.5f, 0.5f, 1}};
+    const std::vector<Vertex> wall = {{0.3f, 0.5f, 0.5f, 1}, {0.7f, 0.5f, 0.5f, 0}},
+                              solid = {wall[0], {0.7f, 0.5f, 0.5f, 1}};
     const Image hidden = picture(wall, settings);
     EXPECT_EQ(changed(hidden, picture({wall[0]}, settings)), 0);
     settings.wallCount = 1;
     EXPECT_GE(changed(hidden, picture(wall, settings)), 10);
-    EXPECT_GE(changed(picture(wall, settings), picture(solid, settings)), 10);   // those of solids are larger
+    EXPECT_GE(changed(picture(wall, settings), picture(solid, settings)),
+              10);  // those of solids are larger
 }
 
 TEST(Snapshot, LegendIsDrawnWithBarAndText) {

@@ -1,4 +1,5 @@
-// Whatever direction gravity has, the picture is that of the same scene turned until it points down.
+// Whatever direction gravity has, the picture is that of the same scene turned until it points
+// down.
 #include "app/frame.h"
 #include "picture.h"
 #include "render/image_compare.h"
@@ -43,7 +44,7 @@ Scene tank(Vec3 up, int dimensions) {
 }
 
 Image pictureOf(const Scene& scene, const std::vector<Ring>& rings = {}) {
-    rendererOf(16, 16);   // makes the context
+    rendererOf(16, 16);  // makes the context
     Frame frame(320, 240, 4);
     const auto simulation = makeSimulation(scene);
     frame.update(*simulation, scene);

@@ -1,4 +1,5 @@
-// The tree keeps its shape: which folder may include which, every source file in one list, tests for each folder.
+// The tree keeps its shape: which folder may include which, every source file in one list, tests
+// for each folder.
 #include <fnmatch.h>
 #include <gtest/gtest.h>
 
@@ -37,7 +38,9 @@ const std::vector<LibraryRule> LibraryRules = {
     {"SDL", {"SDL*"}, {"app/window/*"}},
     {"Dear ImGui", {"imgui*", "backends/imgui*"}, {"app/window/*"}},
     {"OpenGL and EGL", {"GL/*", "EGL/*", "KHR/*"}, {"render/*", "app/window/*"}},
-    {"CUDA", {"cuda*", "cub/*", "thrust/*", "cooperative_groups*"}, {"device/*", "*.cu", "render/*interop*"}},
+    {"CUDA",
+     {"cuda*", "cub/*", "thrust/*", "cooperative_groups*"},
+     {"device/*", "*.cu", "render/*interop*"}},
 };
 
 bool matchesAny(const std::string& text, const std::vector<const char*>& patterns) {
@@ -52,7 +55,8 @@ std::string included(const std::string& line) {
     char hash = 0;
     if (!(words >> hash >> word) || hash != '#' || !word.starts_with("include")) return "";
     const size_t begin = line.find_first_of("\"<"), end = line.find_first_of("\">", begin + 1);
-    return begin == std::string::npos || end == std::string::npos ? "" : line.substr(begin, end - begin);
+    return begin == std::string::npos || end == std::string::npos ? ""
+                                                                  : line.substr(begin, end - begin);
 }
 
 // Why `line` may not stand in `file`; "" when it may.
@@ -150,16 +154,19 @@ TEST(Structure, EverySourceFileIsInOneList) {
     }
     for (const fs::path& path : filesBelow(Root / "tests")) {
         const bool test = path.filename().string().ends_with("_test.cpp");
-        EXPECT_TRUE(!test || listed.contains(path)) << path << " is in no sources.txt: it never runs";
+        EXPECT_TRUE(!test || listed.contains(path))
+            << path << " is in no sources.txt: it never runs";
     }
 }
 
 TEST(Structure, UnitTestsMirrorTheSources) {
     for (const char* folder : {"core", "scene", "sim", "measure", "render"})
-        EXPECT_TRUE(fs::is_directory(Root / "tests/unit" / folder)) << folder << " has no unit test";
+        EXPECT_TRUE(fs::is_directory(Root / "tests/unit" / folder))
+            << folder << " has no unit test";
     for (const auto& entry : fs::directory_iterator(Root / "tests/unit")) {
         if (!entry.is_directory()) continue;
-        EXPECT_TRUE(MayInclude.contains(entry.path().filename().string())) << entry.path() << " mirrors no folder";
+        EXPECT_TRUE(MayInclude.contains(entry.path().filename().string()))
+            << entry.path() << " mirrors no folder";
         EXPECT_FALSE(fs::is_empty(entry.path())) << entry.path();
     }
 }

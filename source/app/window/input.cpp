@@ -42,7 +42,7 @@ void startStir(Ui& ui) {
     ui.stirCenter = ui.frame.surfaceAt(x, y).value_or(camera.onPlane(
         ui.mouseX, ui.mouseY, float(ui.area.width), float(ui.area.height), camera.target));
     ui.stirBefore = ui.stirCenter;
-    ui.drag = Drag::Stir;   // until it turns out that an obstacle is there
+    ui.drag = Drag::Stir;  // until it turns out that an obstacle is there
     ui.grabWanted = true;
     ui.stale = true;
 }

@@ -15,8 +15,7 @@ bool isOfKind(const std::string& path, KnobKind);
 
 // Calls act(path, the value in a, the value in b, knob) for each live knob. Members of lists have
 // none, so that all scenes have the same.
-template <class A, class Act>
-void visitLiveKnobs(A& a, const Scene& b, Act act) {
+template <class A, class Act> void visitLiveKnobs(A& a, const Scene& b, Act act) {
     std::vector<const void*> values;
     visitKnobs(b, [&](const std::string&, const auto& value, const Knob& knob) {
         if (knob.live) values.push_back(&value);

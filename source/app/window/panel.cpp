@@ -22,13 +22,11 @@ namespace {
 constexpr float width = 340, margin = 12;  // px at scale 1
 const ImVec4 red{1.0f, 0.52f, 0.48f, 1}, amber{1.0f, 0.80f, 0.42f, 1};
 
-template <class... T>
-void text(fmt::format_string<T...> format, T&&... values) {
+template <class... T> void text(fmt::format_string<T...> format, T&&... values) {
     ImGui::TextUnformatted(fmt::format(format, std::forward<T>(values)...).c_str());
 }
 
-template <class... T>
-void row(const char* name, fmt::format_string<T...> format, T&&... values) {
+template <class... T> void row(const char* name, fmt::format_string<T...> format, T&&... values) {
     ImGui::TextDisabled("%s", name);
     ImGui::SameLine(0.42f * ImGui::GetContentRegionMax().x);
     text(format, std::forward<T>(values)...);
@@ -380,7 +378,8 @@ void showLoading(const Task& task, float x, float y) {
 }
 
 void showPanel(Ui& ui, int windowHeight) {
-    if (ui.showPanel) panel(ui, windowHeight);
+    if (ui.showPanel)
+        panel(ui, windowHeight);
     else
         rememberPopup(ui);
     notes(ui);

@@ -44,7 +44,8 @@ void History::add(const Measurement& m) {
 
 void History::dropAfter(double t) {
     const auto keep = size_t(std::upper_bound(time.begin(), time.end(), float(t)) - time.begin());
-    for (std::vector<float>* curve : {&time, &kinetic, &potential, &total, &densityError}) curve->resize(keep);
+    for (std::vector<float>* curve : {&time, &kinetic, &potential, &total, &densityError})
+        curve->resize(keep);
 }
 
 Stir stirOf(const Stirrer& stirrer, Vec3 center, float radius, Vec3 velocity) {
@@ -63,7 +64,8 @@ void Player::begin(Loaded loaded, bool again) {
         Probes(loaded.start.scene).hiddenBySolids(loaded.start.scene, *loaded.simulation);
     stepper_ = std::make_unique<Stepper>(std::move(loaded.simulation), loaded.start.scene);
     const Camera camera = scene.view.camera;
-    loaded.start.scene.view.up = upOf(loaded.start.scene);   // gravity may change, the view should not
+    loaded.start.scene.view.up =
+        upOf(loaded.start.scene);  // gravity may change, the view should not
     scene = asked_ = inForce_ = loaded.start.scene;
     if (again) scene.view.camera = camera;
     origin_ = std::move(loaded.start);
@@ -88,7 +90,8 @@ void Player::begin(Loaded loaded, bool again) {
     rateTime_ = inForceSince_ = measurement_.time;
     rateSteps_ = firstSteps_ = measurement_.steps;
     savedSteps_ = 0;
-    stepsLeft_ = std::max<int64_t>(scene.compute.steps - measurement_.steps, 0);   // of a checkpoint's run
+    stepsLeft_ =
+        std::max<int64_t>(scene.compute.steps - measurement_.steps, 0);  // of a checkpoint's run
     lastProceed_ = rateSince_ = wallTime();
     applyWanted_ = underWay_ = stepWanted_ = stirWanted_ = holdWanted_ = collected_ = false;
     ++generation_;
@@ -117,7 +120,8 @@ void Player::switchBackend(Backend backend) {
     while (stepper_->busy()) stepper_->wait(1);
     Scene next = scene;
     next.compute.backend = backend;
-    stepper_ = std::make_unique<Stepper>(makeSimulation(next, stepper_->simulation().state()), next);
+    stepper_ =
+        std::make_unique<Stepper>(makeSimulation(next, stepper_->simulation().state()), next);
     scene.compute.backend = backend;
     stirWanted_ = holdWanted_ = false;
 }

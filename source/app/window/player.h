@@ -18,7 +18,7 @@ struct History {
     std::vector<float> time, kinetic, potential, total, densityError;  // s, J, J, J, 1
     int dimensions = 3;                                                // in two J/m
     void add(const Measurement&);
-    void dropAfter(double time);   // the run has gone back to it
+    void dropAfter(double time);  // the run has gone back to it
 
 private:
     double least_ = 0;  // s between samples
@@ -35,7 +35,8 @@ public:
     Scene scene;  // edit live knobs, then call knobsChanged()
     bool running = true;
     std::string halted;  // why the run was stopped by itself; empty = it wasn't
-    std::string notice;  // what the health guard says while the run goes on; whoever shows it empties it
+    std::string
+        notice;  // what the health guard says while the run goes on; whoever shows it empties it
     std::vector<Particle> culprits;  // of a run that was stopped by itself
 
     // Requests; they are met when the simulation is at hand (collect).
@@ -77,7 +78,8 @@ public:
     void wait(double seconds) const { stepper_->wait(seconds); }
     Simulation& simulation() { return stepper_->simulation(); }
     const Measurement& measurement() const { return measurement_; }
-    // Writes where the run stands, or its last good state when it was stopped by itself. Throws Error (Output).
+    // Writes where the run stands, or its last good state when it was stopped by itself. Throws
+    // Error (Output).
     void saveCheckpoint(const std::string& file);
     // Whether steps would be lost if it ended now.
     bool unsaved() const { return measurement_.steps > std::max(firstSteps_, savedSteps_); }

@@ -71,7 +71,8 @@ void Stepper::runBatch() {
         return std::chrono::duration<double>(Clock::now() - begin).count();
     };
     try {
-        // A GPU says when it is done only when it is waited for, which costs: first one step, then half of what may fit.
+        // A GPU says when it is done only when it is waited for, which costs: first one step, then
+        // half of what may fit.
         for (int64_t done = 0, group = 1; group > 0;) {
             simulation_->step(int(group));
             simulation_->wait();

@@ -240,7 +240,8 @@ void Ui::grab() {
     const Vec3 point = stirCenter + player.scene.domain.min;
     const int solid = player.simulation().solidAt(toDouble(point));
     if (solid < 0 || drag != Drag::Stir) return;
-    if (player.scene.time.mode == TimeMode::Local) return say("obstacles can't be dragged with local steps (time.mode)", true);
+    if (player.scene.time.mode == TimeMode::Local)
+        return say("obstacles can't be dragged with local steps (time.mode)", true);
     player.stir({});
     drag = Drag::Solid;
     hold = {solid, toFloat(player.measurement().solids[size_t(solid)].position) - point};
@@ -254,9 +255,12 @@ void Ui::refreshPicked() {
 std::vector<Ring> Ui::rings() const {
     std::vector<Ring> marks;
     if (drag == Drag::Stir) marks.push_back({stirCenter, stirRadius(), {1.0f, 0.85f, 0.4f}});
-    if (drag == Drag::Solid) marks.push_back({stirCenter, 2 * player.scene.simulation.spacing, {1.0f, 0.85f, 0.4f}});
+    if (drag == Drag::Solid)
+        marks.push_back({stirCenter, 2 * player.scene.simulation.spacing, {1.0f, 0.85f, 0.4f}});
     for (const Particle& p : player.culprits)
-        marks.push_back({toFloat(p.position) - player.scene.domain.min, 2 * player.scene.simulation.spacing, {1.0f, 0.2f, 0.1f}});
+        marks.push_back({toFloat(p.position) - player.scene.domain.min,
+                         2 * player.scene.simulation.spacing,
+                         {1.0f, 0.2f, 0.1f}});
     if (picked)
         marks.push_back({toFloat(picked->position) - player.scene.domain.min,
                          0.9f * player.scene.simulation.spacing,

@@ -48,28 +48,29 @@ struct Ui {
     bool showPanel = true, showHelp = false;
     bool asking = false;                          // whether to leave a run that is not saved
     bool popupOpen = false, closePopups = false;  // lists of the panel; what Esc wants of them
-    bool stale = true;    // the picture no longer shows the state
-    bool rewrite = true;  // the vertices no longer show the state
+    bool stale = true;                            // the picture no longer shows the state
+    bool rewrite = true;                          // the vertices no longer show the state
 
-    SDL_Keymod held = KMOD_NONE;   // modifiers when the event at hand happened, which may be some time ago
+    SDL_Keymod held =
+        KMOD_NONE;  // modifiers when the event at hand happened, which may be some time ago
     Drag drag = Drag::None;
     float mouseX = 0, mouseY = 0;  // px within the area
     Vec3 stirCenter, stirBefore;   // m, relative to the domain's lower corner
     bool grabWanted = false;       // if there is an obstacle at stirCenter
-    Hold hold;                     // of an obstacle that is dragged, its target seen from stirCenter
+    Hold hold;  // of an obstacle that is dragged, its target seen from stirCenter
 
     std::optional<std::array<float, 2>> pickAt;  // px within the area
     std::optional<Particle> picked;
     int pickedSolid = -1;
 
     Message message;
-    std::string noGpu;                // why there is no GPU to switch to; empty = there is one
+    std::string noGpu;  // why there is no GPU to switch to; empty = there is one
     std::vector<SceneEntry>
         scenes;             // that come with the program; read when the list is first opened
     std::string typedFile;  // in the scene list
     std::vector<PassTime> times;
     std::string device, glRenderer;
-    bool onGpu = false;               // steps
+    bool onGpu = false;  // steps
     int fluidCount = 0, wallCount = 0;
     double drawMs = 0;  // of the last picture
 

@@ -252,7 +252,7 @@ private:
             if (ui_.rewrite || (moved_ && timeForPicture())) updateVertices();
             if (ui_.pickAt) ui_.pick();
             if (ui_.grabWanted) ui_.grab();
-        } catch (const Error& error) {   // a GPU was lost
+        } catch (const Error& error) {  // a GPU was lost
             ui_.player.halt(error.what());
             ui_.pickAt.reset();
         }
@@ -290,7 +290,8 @@ private:
         const double now = uiTime(), passed = std::max(now - stirTime_, 1e-3);
         if (ui_.player.busy()) return;
         const Vec3 origin = ui_.player.scene.domain.min;
-        if (ui_.drag == Drag::Solid) ui_.player.hold({ui_.hold.solid, ui_.stirCenter + origin + ui_.hold.target});
+        if (ui_.drag == Drag::Solid)
+            ui_.player.hold({ui_.hold.solid, ui_.stirCenter + origin + ui_.hold.target});
         if (ui_.drag != Drag::Stir) return;
         // What the mouse does in a second of the clock, fluid does in view.speed seconds of its
         // own.

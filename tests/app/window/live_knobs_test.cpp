@@ -21,8 +21,7 @@ void change(int& value, const Knob& knob) {
     value = value == int(knob.max) ? int(knob.min) : value + 1;
 }
 void change(bool& value, const Knob&) { value = !value; }
-template <class T>
-void change(Vec3Of<T>& value, const Knob&) { value.x += T(0.5); }
+template <class T> void change(Vec3Of<T>& value, const Knob&) { value.x += T(0.5); }
 void change(std::string& value, const Knob&) { value += "x"; }
 void change(Keyframes&, const Knob&) {}
 template <class E>
@@ -92,16 +91,16 @@ TEST(IdleKnobs, ChangeNothing) {
             const std::vector<Vec3> plain = end(scene);
             int idle = 0;
             Scene other = scene;
-            visitLiveKnobs(other, scene,
-                           [&](const std::string& path, auto& value, const auto& first, const Knob& k) {
-                               if (!isOfKind(path, KnobKind::Physics) || whyIdle(scene, path).empty())
-                                   return;
-                               change(value, k);
-                               ++idle;
-                               EXPECT_TRUE(isRefused(other) || end(other) == plain)
-                                   << path << " " << formulation << " " << mode;
-                               value = first;
-                           });
+            visitLiveKnobs(
+                other, scene,
+                [&](const std::string& path, auto& value, const auto& first, const Knob& k) {
+                    if (!isOfKind(path, KnobKind::Physics) || whyIdle(scene, path).empty()) return;
+                    change(value, k);
+                    ++idle;
+                    EXPECT_TRUE(isRefused(other) || end(other) == plain)
+                        << path << " " << formulation << " " << mode;
+                    value = first;
+                });
             EXPECT_GT(idle, 5);
         }
 }
@@ -133,8 +132,9 @@ TEST(Curves, AreSavedWithUnits) {
               "error\n0.5,1,2,3,0.01\n");
     m.dimensions = 2, m.time = 1;
     history.add(m);
-    EXPECT_NE(csvOf(history).find("kinetic energy [J/m],potential energy [J/m],total energy [J/m],"),
-              std::string::npos);
+    EXPECT_NE(
+        csvOf(history).find("kinetic energy [J/m],potential energy [J/m],total energy [J/m],"),
+        std::string::npos);
 }
 
 }  // namespace

@@ -30,8 +30,7 @@ void finishLoading(Player& player) {
 }
 
 // Plays until `done` or for ten seconds.
-template <class Done>
-bool play(Player& player, Done done) {
+template <class Done> bool play(Player& player, Done done) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
     while (std::chrono::steady_clock::now() < end) {
         bool moved = false;
@@ -224,7 +223,8 @@ TEST(Player, TroubleThatShorterStepsCantHelpHaltsTheRunAndMarksParticles) {
     EXPECT_NE(player.notice.find("try 1 of 1"), std::string::npos) << player.notice;
     EXPECT_NE(player.halted.find("diverged at step"), std::string::npos) << player.halted;
     EXPECT_FALSE(player.culprits.empty());
-    const auto file = std::filesystem::temp_directory_path() / ("spindrift-good-" + std::to_string(getpid()) + ".h5");
+    const auto file = std::filesystem::temp_directory_path() /
+                      ("spindrift-good-" + std::to_string(getpid()) + ".h5");
     player.saveCheckpoint(file.string());
     EXPECT_EQ(readCheckpoint(file.string()).state.clock.steps, 0) << "the last good state";
     std::filesystem::remove(file);
@@ -244,7 +244,8 @@ TEST(Player, ProbesInsideASolidAreNoticed) {
 
 // Curves go on where the run before had them: in the checkpoint of a window, or in a series.
 TEST(Player, CurvesOfARunThatGoesOnShowAllOfIt) {
-    const auto folder = std::filesystem::temp_directory_path() / ("spindrift-curves-" + std::to_string(getpid()));
+    const auto folder =
+        std::filesystem::temp_directory_path() / ("spindrift-curves-" + std::to_string(getpid()));
     std::filesystem::create_directories(folder);
     const std::string kept = (folder / "kept.h5").string(), plain = (folder / "plain.h5").string(),
                       series = (folder / "run.csv").string();
@@ -273,7 +274,8 @@ TEST(Player, CurvesOfARunThatGoesOnShowAllOfIt) {
         csv.precision(9);
         csv << "time [s],step,kinetic_energy [J],potential_energy [J],density_error [1]\n";
         for (const double share : {0.0, 0.5, 1.5})
-            csv << scale * share * c.state.clock.time << "," << int64_t(share * double(c.state.clock.steps)) << ",1,2,0.01\n";
+            csv << scale * share * c.state.clock.time << ","
+                << int64_t(share * double(c.state.clock.steps)) << ",1,2,0.01\n";
         csv.close();
         writeCheckpoint(plain, scene, c.state);
         player.load(plain);

@@ -145,14 +145,21 @@ TEST_F(WindowTest, DoubleClickMarksAParticleAndCtrlDragStirs) {
     EXPECT_TRUE(window.running());
 }
 
-// A ball in the middle of an otherwise calm scene goes with the mouse, one that stands still and one that floats; beside it there is nothing to be dragged.
+// A ball in the middle of an otherwise calm scene goes with the mouse, one that stands still and
+// one that floats; beside it there is nothing to be dragged.
 TEST_F(WindowTest, CtrlDragPullsAnObstacle) {
     for (const char* density : {"0", "500"}) {
         SCOPED_TRACE(density);
-        Window window(*screen, {"test/dam_break_small", "--size", "800x600", "--color", "plain", "--set", "simulation.gravity=0,0,0", "--set", "fluid.sound_speed=10", "--set", "domain.max=1,1,1", "--set",
-                                "fluid.bodies=[{\"shape\":\"block\",\"min\":[0,0,0],\"max\":[1,0.1,1]}]", "--set",
-                                std::string("solids=[{\"shape\":\"sphere\",\"center\":[0.5,0.5,0.5],\"radius\":0.12,\"density\":") + density + "}]"});
-        window.act("key Tab sleep 1");   // the picture's middle is the window's
+        Window window(
+            *screen,
+            {"test/dam_break_small", "--size", "800x600", "--color", "plain", "--set",
+             "simulation.gravity=0,0,0", "--set", "fluid.sound_speed=10", "--set",
+             "domain.max=1,1,1", "--set",
+             "fluid.bodies=[{\"shape\":\"block\",\"min\":[0,0,0],\"max\":[1,0.1,1]}]", "--set",
+             std::string("solids=[{\"shape\":\"sphere\",\"center\":[0.5,0.5,0.5],\"radius\":0.12,"
+                         "\"density\":") +
+                 density + "}]"});
+        window.act("key Tab sleep 1");  // the picture's middle is the window's
         const Image before = window.screenshot();
         window.act("keydown ctrl");
         window.drag(1, 400, 120, 480, 120);
@@ -160,7 +167,7 @@ TEST_F(WindowTest, CtrlDragPullsAnObstacle) {
         EXPECT_LT(difference(before, window.screenshot()), seen) << "nothing is there";
         window.act("keydown ctrl " + window.at(400, 300) + "mousedown 1 sleep 0.4 " +
                    window.at(450, 300) + "sleep 0.2 " + window.at(500, 300));
-        double moved = 0;   // it follows as fast as the run goes
+        double moved = 0;  // it follows as fast as the run goes
         for (int i = 0; i < 15 && moved <= 0.01; ++i) {
             window.act("sleep 1");
             moved = difference(before, window.screenshot());

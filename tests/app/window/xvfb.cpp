@@ -72,7 +72,7 @@ void Process::send(int signal) const {
 double Process::cpuTime() const {
     std::ifstream stat("/proc/" + std::to_string(pid_) + "/stat");
     std::string word;
-    std::getline(stat, word, ')');   // the name may have blanks
+    std::getline(stat, word, ')');  // the name may have blanks
     for (int field = 3; field < 14; ++field) stat >> word;
     double user = 0, system = 0;
     stat >> user >> system;

@@ -1,11 +1,14 @@
 #pragma once
-// CUDA's runtime on the host, as much of it as the program uses, so that machines without a GPU run the GPU's code: kernels,
-// recordings and interop, under the sanitizers too. It is stricter than a GPU where that finds bugs:
-// - device memory can be touched by kernels and copies only; the host, and whoever runs off its end, crashes;
+// CUDA's runtime on the host, as much of it as the program uses, so that machines without a GPU run
+// the GPU's code: kernels, recordings and interop, under the sanitizers too. It is stricter than a
+// GPU where that finds bugs:
+// - device memory can be touched by kernels and copies only; the host, and whoever runs off its
+// end, crashes;
 // - work is done when somebody waits for it, not when it is asked for;
 // - fresh memory is full of NaNs;
-// - threads run one after the other, in either order (emulation.h), so that a result that depends on it shows.
-// What it can't show: races between threads of different blocks, speed, and what the real compiler makes of the code.
+// - threads run one after the other, in either order (emulation.h), so that a result that depends
+// on it shows. What it can't show: races between threads of different blocks, speed, and what the
+// real compiler makes of the code.
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -30,9 +33,16 @@ inline int atomicAdd(int* p, int v) { return std::exchange(*p, *p + v); }
 inline int atomicSub(int* p, int v) { return std::exchange(*p, *p - v); }
 
 enum cudaError_t {
-    cudaSuccess = 0, cudaErrorInvalidValue = 1, cudaErrorMemoryAllocation = 2, cudaErrorInsufficientDriver = 35,
-    cudaErrorNoDevice = 100, cudaErrorInvalidDevice = 101, cudaErrorNoKernelImageForDevice = 209, cudaErrorIllegalAddress = 700,
-    cudaErrorStreamCaptureUnsupported = 900, cudaErrorGraphExecUpdateFailure = 910
+    cudaSuccess = 0,
+    cudaErrorInvalidValue = 1,
+    cudaErrorMemoryAllocation = 2,
+    cudaErrorInsufficientDriver = 35,
+    cudaErrorNoDevice = 100,
+    cudaErrorInvalidDevice = 101,
+    cudaErrorNoKernelImageForDevice = 209,
+    cudaErrorIllegalAddress = 700,
+    cudaErrorStreamCaptureUnsupported = 900,
+    cudaErrorGraphExecUpdateFailure = 910
 };
 enum cudaMemcpyKind { cudaMemcpyHostToDevice = 1, cudaMemcpyDeviceToHost = 2 };
 enum cudaStreamCaptureMode { cudaStreamCaptureModeThreadLocal = 1 };
@@ -42,10 +52,21 @@ using cudaStream_t = struct EmulatedStream*;
 using cudaEvent_t = struct EmulatedEvent*;
 using cudaGraph_t = struct EmulatedGraph*;
 using cudaGraphExec_t = struct EmulatedGraphExec*;
-struct cudaFuncAttributes { int maxThreadsPerBlock; };
-struct cudaDeviceProp { char name[256]; int major, minor; };
-struct cudaGraphExecUpdateResultInfo { int result; };
-struct cudaLaunchConfig_t { dim3 gridDim, blockDim; size_t dynamicSmemBytes = 0; cudaStream_t stream = nullptr; };
+struct cudaFuncAttributes {
+    int maxThreadsPerBlock;
+};
+struct cudaDeviceProp {
+    char name[256];
+    int major, minor;
+};
+struct cudaGraphExecUpdateResultInfo {
+    int result;
+};
+struct cudaLaunchConfig_t {
+    dim3 gridDim, blockDim;
+    size_t dynamicSmemBytes = 0;
+    cudaStream_t stream = nullptr;
+};
 
 cudaError_t cudaGetDeviceCount(int*);
 cudaError_t cudaDriverGetVersion(int*);
@@ -82,11 +103,15 @@ cudaError_t enqueue(cudaStream_t, std::function<void()>);
 void runGrid(dim3 grid, dim3 block, const std::function<void()>& thread);
 }  // namespace emulation
 
-template <class Kernel> cudaError_t cudaFuncGetAttributes(cudaFuncAttributes*, Kernel*) { return emulation::codeForDevice(); }
+template <class Kernel> cudaError_t cudaFuncGetAttributes(cudaFuncAttributes*, Kernel*) {
+    return emulation::codeForDevice();
+}
 
 template <class... Parameters, class... Arguments>
-cudaError_t cudaLaunchKernelEx(const cudaLaunchConfig_t* c, void (*kernel)(Parameters...), Arguments&&... arguments) {
-    if (c->gridDim.x == 0 || c->blockDim.x == 0 || c->blockDim.x > 1024) return cudaErrorInvalidValue;
+cudaError_t cudaLaunchKernelEx(const cudaLaunchConfig_t* c, void (*kernel)(Parameters...),
+                               Arguments&&... arguments) {
+    if (c->gridDim.x == 0 || c->blockDim.x == 0 || c->blockDim.x > 1024)
+        return cudaErrorInvalidValue;
     std::tuple<std::decay_t<Parameters>...> copies(std::forward<Arguments>(arguments)...);
     return emulation::enqueue(c->stream, [copies, kernel, grid = c->gridDim, block = c->blockDim] {
         emulation::runGrid(grid, block, [&] { std::apply(kernel, copies); });

@@ -12,10 +12,19 @@
 #include <vector>
 
 using Work = std::function<void()>;
-struct EmulatedGraph { std::vector<Work> work; };
-struct EmulatedGraphExec { std::vector<Work> work; };
-struct EmulatedStream { std::vector<Work> queue; std::unique_ptr<EmulatedGraph> recording; };
-struct EmulatedEvent { std::chrono::steady_clock::time_point time; };
+struct EmulatedGraph {
+    std::vector<Work> work;
+};
+struct EmulatedGraphExec {
+    std::vector<Work> work;
+};
+struct EmulatedStream {
+    std::vector<Work> queue;
+    std::unique_ptr<EmulatedGraph> recording;
+};
+struct EmulatedEvent {
+    std::chrono::steady_clock::time_point time;
+};
 
 dim3 threadIdx, blockIdx, blockDim, gridDim;
 
@@ -30,7 +39,10 @@ namespace {
 // --- memory: pages that are closed to the host, with a closed page behind ---
 
 constexpr size_t page = 4096;
-struct Region { char* pages; size_t bytes; };
+struct Region {
+    char* pages;
+    size_t bytes;
+};
 std::map<void*, Region> regions;
 size_t used = 0;
 
@@ -79,7 +91,8 @@ unsigned inOrder(unsigned k, unsigned n) { return machine.reversed ? n - 1 - k :
 void runBlock(unsigned threads) {
     while (fibres.size() < threads) fibres.push_back(std::make_unique<Fibre>());
     start(inOrder(0, threads));
-    if (fibres[inOrder(0, threads)]->done) {   // no barriers in this kernel: fibres would only cost time
+    if (fibres[inOrder(0, threads)]
+            ->done) {  // no barriers in this kernel: fibres would only cost time
         for (unsigned k = 1; k < threads; ++k) {
             threadIdx.x = inOrder(k, threads);
             (*body)();
@@ -90,7 +103,8 @@ void runBlock(unsigned threads) {
     for (bool again = true; again;) {
         unsigned waiting = 0;
         for (unsigned t = 0; t < threads; ++t) waiting += fibres[t]->waits && !fibres[t]->done;
-        if (waiting != 0 && waiting != threads) die("a barrier that not all threads of the block reach");
+        if (waiting != 0 && waiting != threads)
+            die("a barrier that not all threads of the block reach");
         again = waiting > 0;
         for (unsigned k = 0; again && k < threads; ++k) resume(inOrder(k, threads));
     }
@@ -107,7 +121,9 @@ std::vector<EmulatedStream*> streams;
 
 }  // namespace
 
-cudaError_t codeForDevice() { return machine.codeFits ? cudaSuccess : cudaErrorNoKernelImageForDevice; }
+cudaError_t codeForDevice() {
+    return machine.codeFits ? cudaSuccess : cudaErrorNoKernelImageForDevice;
+}
 
 cudaError_t enqueue(cudaStream_t s, Work work) {
     if (machine.lost) return alive();
@@ -147,7 +163,9 @@ cudaError_t cudaGetDeviceProperties(cudaDeviceProp* p, int) {
     *p = {"emulated GPU", 9, 0};
     return alive();
 }
-cudaError_t cudaSetDevice(int d) { return d < machine.devices ? cudaSuccess : cudaErrorInvalidDevice; }
+cudaError_t cudaSetDevice(int d) {
+    return d < machine.devices ? cudaSuccess : cudaErrorInvalidDevice;
+}
 cudaError_t cudaMemGetInfo(size_t* free, size_t* all) {
     *all = machine.memory;
     *free = machine.memory - std::min(used, machine.memory);
@@ -156,12 +174,18 @@ cudaError_t cudaMemGetInfo(size_t* free, size_t* all) {
 cudaError_t cudaGetLastError() { return alive(); }
 const char* cudaGetErrorString(cudaError_t e) {
     switch (e) {
-        case cudaErrorMemoryAllocation: return "out of memory";
-        case cudaErrorInsufficientDriver: return "CUDA driver version is insufficient for CUDA runtime version";
-        case cudaErrorNoDevice: return "no CUDA-capable device is detected";
-        case cudaErrorNoKernelImageForDevice: return "no kernel image is available for execution on the device";
-        case cudaErrorIllegalAddress: return "an illegal memory access was encountered";
-        default: return "another error";
+        case cudaErrorMemoryAllocation:
+            return "out of memory";
+        case cudaErrorInsufficientDriver:
+            return "CUDA driver version is insufficient for CUDA runtime version";
+        case cudaErrorNoDevice:
+            return "no CUDA-capable device is detected";
+        case cudaErrorNoKernelImageForDevice:
+            return "no kernel image is available for execution on the device";
+        case cudaErrorIllegalAddress:
+            return "an illegal memory access was encountered";
+        default:
+            return "another error";
     }
 }
 
@@ -171,10 +195,11 @@ cudaError_t cudaMalloc(void** p, size_t bytes) {
         if (s->recording) return cudaErrorStreamCaptureUnsupported;
     if (used + bytes > machine.memory) return cudaErrorMemoryAllocation;
     const size_t pages = (bytes + page - 1) / page * page + page;
-    char* memory = static_cast<char*>(mmap(nullptr, pages, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0));
+    char* memory = static_cast<char*>(
+        mmap(nullptr, pages, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0));
     if (memory == MAP_FAILED) return cudaErrorMemoryAllocation;
     mprotect(memory + pages - page, page, PROT_NONE);
-    std::memset(memory, 0xff, pages - page);   // NaN as a number
+    std::memset(memory, 0xff, pages - page);  // NaN as a number
     *p = memory + (pages - page - bytes) / 16 * 16;
     mprotect(memory, pages - page, PROT_NONE);
     regions[*p] = {memory, pages - page};
@@ -192,7 +217,8 @@ cudaError_t cudaFree(void* p) {
     regions.erase(found);
     return alive();
 }
-cudaError_t cudaMemcpyAsync(void* to, const void* from, size_t bytes, cudaMemcpyKind, cudaStream_t s) {
+cudaError_t cudaMemcpyAsync(void* to, const void* from, size_t bytes, cudaMemcpyKind,
+                            cudaStream_t s) {
     return enqueue(s, [=] { std::memcpy(to, from, bytes); });
 }
 cudaError_t cudaMemsetAsync(void* p, int value, size_t bytes, cudaStream_t s) {

@@ -1,4 +1,5 @@
-// What only an emulated GPU can show: failing drivers, lost devices, the order of threads, and what is done how often.
+// What only an emulated GPU can show: failing drivers, lost devices, the order of threads, and what
+// is done how often.
 #include "app/frame_bench.h"
 #include "core/error.h"
 #include "cuda/gpu.h"
@@ -13,7 +14,9 @@ namespace {
 class EmulatedGpu : public testing::Test {
 protected:
     void TearDown() override { emulation::machine = {}; }
-    static std::unique_ptr<Simulation> start(const Scene& s) { return makeCudaSimulation(s, placeParticles(s), 0); }
+    static std::unique_ptr<Simulation> start(const Scene& s) {
+        return makeCudaSimulation(s, placeParticles(s), 0);
+    }
     Scene scene = testScene("dam_break_small.json");
 };
 
@@ -53,7 +56,7 @@ TEST_F(EmulatedGpu, AutoTakesTheGpuWhenThereIsOne) {
     emulation::machine.devices = 0;
     EXPECT_EQ(makeSimulation(scene)->deviceName().substr(0, 3), "CPU");
     emulation::machine = {};
-    emulation::machine.memory = 1 << 20;   // too little for the scene
+    emulation::machine.memory = 1 << 20;  // too little for the scene
     EXPECT_EQ(makeSimulation(scene)->deviceName().substr(0, 3), "CPU");
     emulation::machine = {};
     scene.compute.precision = Precision::Double;
@@ -69,7 +72,8 @@ TEST_F(EmulatedGpu, ALostDeviceIsOneLineAndNothingHangs) {
         FAIL();
     } catch (const Error& error) {
         EXPECT_EQ(error.exit, Exit::DeviceLost);
-        EXPECT_NE(std::string(error.what()).find("the GPU was lost"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("the GPU was lost"), std::string::npos)
+            << error.what();
     }
 }
 
@@ -105,7 +109,7 @@ TEST_F(EmulatedGpu, OrderOfThreadsDoesNotMatter) {
 
 TEST_F(EmulatedGpu, StepsAreRecordedOnceAndAllocateNothing) {
     const auto gpu = start(scene);
-    gpu->step(1);   // measured pass by pass
+    gpu->step(1);  // measured pass by pass
     const emulation::Counts before = emulation::counts;
     gpu->step(50);
     gpu->measure();
@@ -118,7 +122,8 @@ TEST_F(EmulatedGpu, StepsAreRecordedOnceAndAllocateNothing) {
     gpu->apply(scene);
     gpu->step(50);
     EXPECT_EQ(emulation::counts.recordings - after.recordings, 2);
-    EXPECT_EQ(emulation::counts.instantiations, after.instantiations) << "the same passes with other constants";
+    EXPECT_EQ(emulation::counts.instantiations, after.instantiations)
+        << "the same passes with other constants";
 }
 
 TEST_F(EmulatedGpu, StepsDontWaitForTheHost) {
@@ -137,7 +142,8 @@ TEST_F(EmulatedGpu, BenchmarkOfFramesAndSwitchingWorks) {
     scene.compute.backend = Backend::Cuda;
     const nlohmann::json row = benchFrameAndSwitch(scene);
     EXPECT_EQ(row["vertices"], "written in place");
-    for (const char* key : {"particles", "frame_ms", "switch_to_cpu_ms", "switch_back_ms"}) EXPECT_GT(row[key], 0) << key;
+    for (const char* key : {"particles", "frame_ms", "switch_to_cpu_ms", "switch_back_ms"})
+        EXPECT_GT(row[key], 0) << key;
 }
 
 // The emulation itself: it must notice what it is there to notice.

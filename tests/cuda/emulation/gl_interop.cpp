@@ -2,7 +2,11 @@
 
 #include "emulation.h"
 
-struct cudaGraphicsResource { GLuint buffer; void* mapped; GLint64 bytes; };
+struct cudaGraphicsResource {
+    GLuint buffer;
+    void* mapped;
+    GLint64 bytes;
+};
 
 using emulation::counts, emulation::machine;
 
@@ -19,13 +23,17 @@ cudaError_t cudaGraphicsGLRegisterBuffer(cudaGraphicsResource** r, GLuint buffer
     ++counts.registrations;
     return cudaSuccess;
 }
-cudaError_t cudaGraphicsUnregisterResource(cudaGraphicsResource* r) { return delete r, cudaSuccess; }
+cudaError_t cudaGraphicsUnregisterResource(cudaGraphicsResource* r) {
+    return delete r, cudaSuccess;
+}
 cudaError_t cudaGraphicsMapResources(int, cudaGraphicsResource** r, cudaStream_t) {
     if (machine.lost) return cudaErrorIllegalAddress;
     GLint64 bytes = 0;
     glGetNamedBufferParameteri64v((*r)->buffer, GL_BUFFER_SIZE, &bytes);
-    if ((*r)->mapped || bytes != (*r)->bytes) return cudaErrorInvalidValue;   // mapped twice, or grown while lent
-    (*r)->mapped = glMapNamedBufferRange((*r)->buffer, 0, GLsizeiptr(bytes), GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT);
+    if ((*r)->mapped || bytes != (*r)->bytes)
+        return cudaErrorInvalidValue;  // mapped twice, or grown while lent
+    (*r)->mapped = glMapNamedBufferRange((*r)->buffer, 0, GLsizeiptr(bytes),
+                                         GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT);
     ++counts.maps;
     return (*r)->mapped ? cudaSuccess : cudaErrorInvalidValue;
 }

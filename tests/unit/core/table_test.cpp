@@ -19,7 +19,8 @@ TEST(Table, ReadsColumnsByName) {
     ASSERT_EQ(table.at("y").size(), 129u);
     EXPECT_EQ(table.at("y").back(), 1);
     EXPECT_EQ(table.at("Re100")[1], -0.005839);
-    EXPECT_TRUE(std::isnan(readTable(Data + "lobovsky2014_H300_peak_pressures.csv").at("sensor")[0]));
+    EXPECT_TRUE(
+        std::isnan(readTable(Data + "lobovsky2014_H300_peak_pressures.csv").at("sensor")[0]));
 }
 
 TEST(Table, MissingFileIsAnError) {
@@ -35,7 +36,10 @@ TEST(Table, StrictTablesNameTheLineThatIsWrong) {
     try {
         readStrictTable(file, {{"t", "s", true}, {"x", "m", true}});
         FAIL();
-    } catch (const Error& error) { EXPECT_NE(std::string(error.what()).find("line 4: x is no number"), std::string::npos) << error.what(); }
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("line 4: x is no number"), std::string::npos)
+            << error.what();
+    }
     EXPECT_THROW(readStrictTable(file, {{"t", "s"}, {"x", "m"}, {"y", "m", true}}), Error);
 }
 

@@ -7,19 +7,23 @@
 namespace spindrift {
 namespace {
 
-struct Sorted { int slots; std::vector<int> cellStart, order; };
+struct Sorted {
+    int slots;
+    std::vector<int> cellStart, order;
+};
 
 Sorted sortWith(int threads, const std::vector<int>& keys, int rows, int rowLength, int pad) {
     Omp device(threads);
     Buffer<int, Omp> order(device);
     std::vector<int> cellStart(size_t(rows) * rowLength + 1);
-    const int slots = device.sortByCell(int(keys.size()), keys.data(), rows, rowLength, pad, cellStart.data(), order);
+    const int slots = device.sortByCell(int(keys.size()), keys.data(), rows, rowLength, pad,
+                                        cellStart.data(), order);
     return {slots, cellStart, std::vector<int>(order.data(), order.data() + slots)};
 }
 
 std::vector<int> randomKeys(int n, int cells) {
     std::mt19937 random(3);
-    std::uniform_int_distribution<int> cell(-1, cells - 1);   // -1: to be dropped
+    std::uniform_int_distribution<int> cell(-1, cells - 1);  // -1: to be dropped
     std::vector<int> keys(n);
     for (int& key : keys) key = cell(random);
     return keys;

@@ -12,7 +12,10 @@ namespace {
 // ms of a step by so many threads; every tenth makes new lists and takes three times as long.
 using Cost = std::function<double(int threads)>;
 
-struct Spent { double ms; int last; };
+struct Spent {
+    double ms;
+    int last;
+};
 Spent run(Team& team, const Cost& cost, int steps) {
     double ms = 0;
     for (int k = 0; k < steps; ++k) {

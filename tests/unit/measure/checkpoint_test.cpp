@@ -1,4 +1,5 @@
-// A checkpoint is what was written, or an error of one line; never something else, never half a file.
+// A checkpoint is what was written, or an error of one line; never something else, never half a
+// file.
 #include "measure/checkpoint.h"
 
 #include "core/error.h"
@@ -48,12 +49,17 @@ protected:
         return {std::istreambuf_iterator<char>(stream), {}};
     }
     static bool same(const Checkpoint& a, const Scene& scene, const RunState& b) {
-        return writeScene(a.scene) == writeScene(scene) && a.state.particles.positions == b.particles.positions &&
-               a.state.particles.velocities == b.particles.velocities && a.state.particles.walls == b.particles.walls && a.state.particles.bodies == b.particles.bodies &&
-               a.state.densities == b.densities && a.state.clock.time == b.clock.time && a.state.clock.dt == b.clock.dt && a.state.clock.steps == b.clock.steps &&
-               a.state.start.low == b.start.low && a.state.start.high == b.start.high && a.state.start.speed == b.start.speed;
+        return writeScene(a.scene) == writeScene(scene) &&
+               a.state.particles.positions == b.particles.positions &&
+               a.state.particles.velocities == b.particles.velocities &&
+               a.state.particles.walls == b.particles.walls &&
+               a.state.particles.bodies == b.particles.bodies && a.state.densities == b.densities &&
+               a.state.clock.time == b.clock.time && a.state.clock.dt == b.clock.dt &&
+               a.state.clock.steps == b.clock.steps && a.state.start.low == b.start.low &&
+               a.state.start.high == b.start.high && a.state.start.speed == b.start.speed;
     }
-    // "" when it reads as what was written, "another" when as something else, else what the error says.
+    // "" when it reads as what was written, "another" when as something else, else what the error
+    // says.
     std::string outcome(const std::string& path) const {
         try {
             return same(readCheckpoint(path), scene, state) ? "" : "another";
@@ -86,7 +92,8 @@ TEST_F(Checkpoints, ReadsWhatWasWrittenBitByBit) {
     state.densities[7] = -1;
     writeCheckpoint(file, scene, state);
     EXPECT_NE(outcome(file).find("densities"), std::string::npos) << outcome(file);
-    EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1) << "leaves something beside it";
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1)
+        << "leaves something beside it";
 }
 
 // In two dimensions what has a depth was of a slab one spacing thick until version 4, and is of a
@@ -120,7 +127,8 @@ TEST_F(Checkpoints, TruncatedFilesAreRefused) {
     writeCheckpoint(file, scene, state);
     const std::string whole = bytesOf(file), part = (folder / "part.h5").string();
     for (double share : {0.0, 0.001, 0.01, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 0.9999}) {
-        std::ofstream(part, std::ios::binary) << whole.substr(0, size_t(share * double(whole.size())));
+        std::ofstream(part, std::ios::binary)
+            << whole.substr(0, size_t(share * double(whole.size())));
         EXPECT_NE(outcome(part), "") << share;
         EXPECT_NE(outcome(part), "another") << share;
     }
@@ -129,7 +137,7 @@ TEST_F(Checkpoints, TruncatedFilesAreRefused) {
 TEST_F(Checkpoints, DamagedBytesAreNeverBelieved) {
     writeCheckpoint(file, scene, state);
     const std::string whole = bytesOf(file), damaged = (folder / "damaged.h5").string();
-    const char* seed = std::getenv("SPINDRIFT_SEED");   // to try others
+    const char* seed = std::getenv("SPINDRIFT_SEED");  // to try others
     std::mt19937 random(seed ? unsigned(std::atoi(seed)) : 9u);
     int refused = 0;
     for (int k = 0; k < 300; ++k) {
@@ -171,19 +179,23 @@ TEST_F(Checkpoints, FullDiskKeepsTheLastOne) {
         ADD_FAILURE() << "was written";
     } catch (const Error& error) {
         EXPECT_EQ(error.exit, Exit::Output);
-        EXPECT_NE(std::string(error.what()).find("is the disk full?"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("is the disk full?"), std::string::npos)
+            << error.what();
     }
     setrlimit(RLIMIT_FSIZE, &limit);
     EXPECT_EQ(bytesOf(file), before);
     EXPECT_EQ(outcome(file), "");
-    EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1) << "leaves something beside it";
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1)
+        << "leaves something beside it";
 }
 
 // What floats and what bends is there again, and the run has the bits of the one that went on.
 TEST_F(Checkpoints, HoldSolidsThatFloatAndObjects) {
     Scene s = loadScene(SPINDRIFT_SOURCE_DIR "/configs/test/floating_small.json");
     s.compute.backend = Backend::Cpu;
-    setKnob(s, R"(objects=[{"shape":"sheet","min":[0.05,0.55,0.1],"max":[0.25,0.55,0.7],"breaking_strain":0.01}])");
+    setKnob(
+        s,
+        R"(objects=[{"shape":"sheet","min":[0.05,0.55,0.1],"max":[0.25,0.55,0.7],"breaking_strain":0.01}])");
     setKnob(s, R"(grips=[{"min":[0,0.5,0],"max":[0.06,0.6,1]}])");
     auto first = makeSimulation(s);
     first->step(120);

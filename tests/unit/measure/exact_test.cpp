@@ -14,22 +14,30 @@ TEST(Exact, TaylorGreenSolvesNavierStokes) {
     const TaylorGreenFlow f{2, 0.7, 0.03, 5};
     const double e = 1e-4, t = 0.4;
     for (Vec3d x : {Vec3d{0.3, 0.9, 0}, Vec3d{1.7, 0.2, 0}}) {
-        auto u = [&](double dx, double dy, double dt = 0) { return f.velocity({x.x + dx, x.y + dy, 0}, t + dt); };
+        auto u = [&](double dx, double dy, double dt = 0) {
+            return f.velocity({x.x + dx, x.y + dy, 0}, t + dt);
+        };
         auto p = [&](double dx, double dy) { return f.pressure({x.x + dx, x.y + dy, 0}, t); };
-        const Vec3d ux = (1 / (2 * e)) * (u(e, 0) - u(-e, 0)), uy = (1 / (2 * e)) * (u(0, e) - u(0, -e));
-        const Vec3d laplacian = (1 / (e * e)) * (u(e, 0) + u(-e, 0) + u(0, e) + u(0, -e) - 4.0 * u(0, 0));
+        const Vec3d ux = (1 / (2 * e)) * (u(e, 0) - u(-e, 0)),
+                    uy = (1 / (2 * e)) * (u(0, e) - u(0, -e));
+        const Vec3d laplacian =
+            (1 / (e * e)) * (u(e, 0) + u(-e, 0) + u(0, e) + u(0, -e) - 4.0 * u(0, 0));
         const Vec3d rate = (1 / (2 * e)) * (u(0, 0, e) - u(0, 0, -e));
-        const Vec3d force = (-1 / (2 * e * f.rho0)) * Vec3d{p(e, 0) - p(-e, 0), p(0, e) - p(0, -e), 0};
+        const Vec3d force =
+            (-1 / (2 * e * f.rho0)) * Vec3d{p(e, 0) - p(-e, 0), p(0, e) - p(0, -e), 0};
         const Vec3d rest = rate + u(0, 0).x * ux + u(0, 0).y * uy - force - f.nu * laplacian;
         EXPECT_LT(length(rest), 1e-5);
         EXPECT_NEAR(ux.x + uy.y, 0, 1e-7);
     }
 }
 
-// Long waves are seen as they are, with an error that goes with the square of their wave number; the shortest have no slope.
+// Long waves are seen as they are, with an error that goes with the square of their wave number;
+// the shortest have no slope.
 TEST(Exact, LatticesSeeLongWavesBest) {
     for (Kernel kernel : {Kernel::WendlandC2, Kernel::QuinticSpline}) {
-        const auto missing = [&](double kdx) { return 1 - latticeWave(kernel, 2, 2.6, kdx).k / kdx; };
+        const auto missing = [&](double kdx) {
+            return 1 - latticeWave(kernel, 2, 2.6, kdx).k / kdx;
+        };
         EXPECT_NEAR(missing(0.1) / missing(0.05), 4, 0.05);
         EXPECT_LT(missing(0.1), 0.01);
         EXPECT_NEAR(latticeWave(kernel, 3, 2.6, 0.01).k2, 1e-4, 1e-8);
@@ -37,7 +45,8 @@ TEST(Exact, LatticesSeeLongWavesBest) {
     }
 }
 
-// Table values of Morris, Fox and Zhu's series, L = 1e-3 m, nu = 1e-6 m^2/s, V0 = 1.25e-5 m/s, at nu t / L^2 = 0.1125.
+// Table values of Morris, Fox and Zhu's series, L = 1e-3 m, nu = 1e-6 m^2/s, V0 = 1.25e-5 m/s, at
+// nu t / L^2 = 0.1125.
 TEST(Exact, FlowsBetweenPlatesStartAtRestAndEndSteady) {
     const double L = 1e-3, nu = 1e-6, F = 1e-4, V = 1.25e-5;
     for (double y : {0.0, 0.2e-3, 0.5e-3, 0.9e-3, 1e-3}) {
@@ -46,8 +55,10 @@ TEST(Exact, FlowsBetweenPlatesStartAtRestAndEndSteady) {
         EXPECT_NEAR(couetteFlow(y, 10, L, nu, V) / V, y / L, 1e-9);
     }
     EXPECT_NEAR(couetteFlow(0.5e-3, 1e-3, L, nu, V) / V, 0, 1e-9);
-    // One term of the series is enough at late times: 1 - 32/pi^3 exp(-pi^2 nu t / L^2) in the middle.
-    EXPECT_NEAR(poiseuilleFlow(0.5e-3, 0.225, L, nu, F) / V, 1 - 32 / std::pow(M_PI, 3) * std::exp(-M_PI * M_PI * 0.225), 1e-4);
+    // One term of the series is enough at late times: 1 - 32/pi^3 exp(-pi^2 nu t / L^2) in the
+    // middle.
+    EXPECT_NEAR(poiseuilleFlow(0.5e-3, 0.225, L, nu, F) / V,
+                1 - 32 / std::pow(M_PI, 3) * std::exp(-M_PI * M_PI * 0.225), 1e-4);
 }
 
 // Period and largest semi-axis as in Monaghan and Rafiee 2013 and Sun 2017 (T = 4.827, 1.932 R).

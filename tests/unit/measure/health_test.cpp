@@ -70,7 +70,8 @@ TEST(Health, RemedyFitsTheStepping) {
 TEST(Health, SqueezedParticlesAndStepsWithoutLengthAreTrouble) {
     Measurement m = sound();
     m.maxDensityError = 1.1;
-    EXPECT_NE(divergence(Scene{}, m).find("squeezed to 2.1 times the rest density"), std::string::npos);
+    EXPECT_NE(divergence(Scene{}, m).find("squeezed to 2.1 times the rest density"),
+              std::string::npos);
     EXPECT_EQ(divergence(Scene{}, m, 1.2), "");
     Scene classic;
     classic.simulation.formulation = Formulation::Classic;
@@ -95,11 +96,13 @@ Scene dropped() {
 }
 
 struct Guarded {
-    explicit Guarded(const Scene& s) : scene(s), simulation(makeSimulation(s)), guard(*simulation, scene) {}
+    explicit Guarded(const Scene& s)
+        : scene(s), simulation(makeSimulation(s)), guard(*simulation, scene) {}
     // Until then, in steps, or until the guard gives up. What it said, one line each.
     HealthGuard::Finding run(int64_t steps) {
         HealthGuard::Finding found = HealthGuard::Finding::Sound;
-        for (int looks = 0; looks < 10000 && now.steps < steps && found != HealthGuard::Finding::GaveUp; ++looks) {
+        for (int looks = 0;
+             looks < 10000 && now.steps < steps && found != HealthGuard::Finding::GaveUp; ++looks) {
             simulation->step(10);
             now = simulation->measure();
             found = guard.look(now);
@@ -108,7 +111,9 @@ struct Guarded {
         return found;
     }
     bool heard(const std::string& words) const {
-        return std::any_of(said.begin(), said.end(), [&](const std::string& s) { return s.find(words) != std::string::npos; });
+        return std::any_of(said.begin(), said.end(), [&](const std::string& s) {
+            return s.find(words) != std::string::npos;
+        });
     }
     Scene scene;
     std::unique_ptr<Simulation> simulation;
@@ -132,16 +137,19 @@ TEST(HealthGuard, LeavesASoundRunAsItIs) {
 
 TEST(HealthGuard, RescuesARunWhoseStepIsFarTooLong) {
     Scene scene = dropped();
-    scene.time.mode = TimeMode::Fixed, scene.time.step = 0.02f;   // sound crosses a particle's reach in 0.003 s
+    scene.time.mode = TimeMode::Fixed,
+    scene.time.step = 0.02f;  // sound crosses a particle's reach in 0.003 s
     Guarded guarded(scene);
     EXPECT_EQ(int(guarded.run(3000)), int(HealthGuard::Finding::Sound));
     EXPECT_EQ(guarded.now.steps, 3000);
-    EXPECT_TRUE(guarded.heard("back to step 0 (0 s), on with 0.5 of the time step, try 1 of 3")) << guarded.said.size();
+    EXPECT_TRUE(guarded.heard("back to step 0 (0 s), on with 0.5 of the time step, try 1 of 3"))
+        << guarded.said.size();
     EXPECT_TRUE(guarded.now.finite);
     EXPECT_LT(guarded.now.dt, 0.011);
     EXPECT_LT(guarded.now.maxSpeed, 4);
     scene.time.retries = 0;
-    EXPECT_EQ(int(Guarded(scene).run(3000)), int(HealthGuard::Finding::GaveUp)) << "else this test shows nothing";
+    EXPECT_EQ(int(Guarded(scene).run(3000)), int(HealthGuard::Finding::GaveUp))
+        << "else this test shows nothing";
 }
 
 // A step that is too long only while sound is made fast: afterwards it is what it was.
@@ -172,7 +180,8 @@ TEST(HealthGuard, GivesUpWithPlaceCauseAndParticles) {
     ASSERT_FALSE(guarded.guard.culprits().empty());
     const Particle worst = guarded.guard.culprits()[0];
     EXPECT_TRUE(std::isfinite(worst.position.x));
-    for (const char* words : {"diverged at step ", " at (", ") m: ", "; particle ", "shorter steps have not helped 2 times", "lower time.step"})
+    for (const char* words : {"diverged at step ", " at (", ") m: ", "; particle ",
+                              "shorter steps have not helped 2 times", "lower time.step"})
         EXPECT_TRUE(guarded.heard(words)) << words << " in " << guarded.said.back();
     EXPECT_NE(guarded.said.back().find("particle " + std::to_string(worst.id)), std::string::npos);
     EXPECT_EQ(guarded.guard.lastGood().clock.steps, 0);
@@ -186,7 +195,8 @@ TEST(HealthGuard, RescuesTheSameWayEachTime) {
     one.run(1500), two.run(1500);
     EXPECT_GT(one.guard.retries(), 0);
     EXPECT_EQ(one.said, two.said);
-    EXPECT_EQ(one.simulation->state().particles.positions, two.simulation->state().particles.positions);
+    EXPECT_EQ(one.simulation->state().particles.positions,
+              two.simulation->state().particles.positions);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Between the particles: linear fields exactly, also at the rim and where particles lie in a plane or a line.
+// Between the particles: linear fields exactly, also at the rim and where particles lie in a plane
+// or a line.
 #include "measure/interpolate.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +17,8 @@ std::vector<Particle> cloud(int dimensions) {
     for (int i = 0; i < 800; ++i) {
         Particle p;
         p.id = i;
-        p.position = {unit(random), dimensions > 1 ? unit(random) : 0.5, dimensions > 2 ? unit(random) : 0.5};
+        p.position = {unit(random), dimensions > 1 ? unit(random) : 0.5,
+                      dimensions > 2 ? unit(random) : 0.5};
         p.velocity = {2 + 3 * p.position.x - p.position.y, p.position.z, -1};
         p.pressure = 7 - 5 * p.position.x + 2 * p.position.y;
         particles.push_back(p);

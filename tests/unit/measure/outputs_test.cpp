@@ -1,4 +1,5 @@
-// Whatever is written, and wherever: files whole or not at all, what isn't a file written through, nothing destroyed.
+// Whatever is written, and wherever: files whole or not at all, what isn't a file written through,
+// nothing destroyed.
 #include "core/error.h"
 #include "core/output_file.h"
 #include "measure/checkpoint.h"
@@ -38,7 +39,7 @@ std::string allFrom(int file) {
     return bytes;
 }
 mode_t modeOf(const fs::path& path) {
-    struct stat status{};
+    struct stat status {};
     lstat(path.c_str(), &status);
     return status.st_mode;
 }
@@ -64,7 +65,10 @@ std::vector<Writer> writers() {
     static const std::vector<Particle> one(1);
     return {{"text", "", [](Path path) { writeText(path, std::string(100000, 'x') + "\n"); }},
             {"growing text", ".csv", [](Path path) { GrowingText(path, "one\n").append("two\n"); }},
-            {"picture", ".png", [](Path path) { writePng(path, Image{40, 30, std::vector<uint8_t>(3600, 7)}); }},
+            {"picture", ".png",
+             [](Path path) {
+                 writePng(path, Image{40, 30, std::vector<uint8_t>(3600, 7)});
+             }},
             {"series as HDF5", ".h5", [](Path path) { series().writeHdf5(path); }},
             {"particles as CSV", ".csv", [](Path path) { saveParticles(path, one); }},
             {"particles as HDF5", ".h5", [](Path path) { saveParticles(path, one); }},
@@ -87,7 +91,9 @@ protected:
         EXPECT_GT(bytes.size(), 7u);
         return bytes;
     }
-    std::string pathFor(const Writer& w, const std::string& name) const { return folder_ / (name + w.extension); }
+    std::string pathFor(const Writer& w, const std::string& name) const {
+        return folder_ / (name + w.extension);
+    }
     // "" when it was refused in one line with the right code.
     static std::string refusal(const std::function<void()>& act) {
         try {
@@ -103,7 +109,8 @@ protected:
         for (const auto& entry : fs::recursive_directory_iterator(folder_))
             EXPECT_EQ(entry.path().string().find(".part"), std::string::npos) << entry.path();
     }
-    const fs::path folder_ = fs::temp_directory_path() / ("spindrift_outputs_" + std::to_string(getpid()));
+    const fs::path folder_ =
+        fs::temp_directory_path() / ("spindrift_outputs_" + std::to_string(getpid()));
 };
 
 TEST_F(Outputs, FilesAreReplacedAndKeepTheirRights) {
@@ -127,9 +134,11 @@ TEST_F(Outputs, FilesAreReplacedAndKeepTheirRights) {
 
 TEST_F(Outputs, LinksAreFollowedAndStay) {
     for (const Writer& w : writers()) {
-        const std::string bytes = expected(w), link = pathFor(w, "link"), file = folder_ / "sub" / (std::string("file") + w.extension);
+        const std::string bytes = expected(w), link = pathFor(w, "link"),
+                          file = folder_ / "sub" / (std::string("file") + w.extension);
         fs::create_symlink("between", link);
-        fs::create_symlink(fs::path("sub") / (std::string("file") + w.extension), folder_ / "between");
+        fs::create_symlink(fs::path("sub") / (std::string("file") + w.extension),
+                           folder_ / "between");
         for (const bool there : {false, true}) {
             if (there) std::ofstream(file) << "before";
             requireWritable(link);
@@ -150,9 +159,11 @@ TEST_F(Outputs, FifosAreWrittenThrough) {
         const std::string bytes = expected(w), fifo = pathFor(w, "fifo");
         ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
         requireWritable(fifo);
-        auto reader = std::async(std::launch::async, [&] { return allFrom(open(fifo.c_str(), O_RDONLY)); });
+        auto reader =
+            std::async(std::launch::async, [&] { return allFrom(open(fifo.c_str(), O_RDONLY)); });
         const std::string refused = refusal([&] { w.write(fifo); });
-        if (!refused.empty()) close(open(fifo.c_str(), O_WRONLY | O_NONBLOCK));   // the reader waits no longer
+        if (!refused.empty())
+            close(open(fifo.c_str(), O_WRONLY | O_NONBLOCK));  // the reader waits no longer
         EXPECT_EQ(refused, "") << w.name;
         EXPECT_EQ(reader.get(), bytes) << w.name;
         EXPECT_TRUE(S_ISFIFO(modeOf(fifo))) << w.name;
@@ -171,7 +182,8 @@ TEST_F(Outputs, SocketsAreWrittenThrough) {
         const int listener = socket(AF_UNIX, SOCK_STREAM, 0);
         ASSERT_EQ(bind(listener, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
         listen(listener, 1);
-        auto reader = std::async(std::launch::async, [&] { return allFrom(accept(listener, nullptr, nullptr)); });
+        auto reader = std::async(std::launch::async,
+                                 [&] { return allFrom(accept(listener, nullptr, nullptr)); });
         const std::string refused = refusal([&] { w.write(place); });
         if (!refused.empty()) shutdown(listener, SHUT_RDWR);
         EXPECT_EQ(refused, "") << w.name;
@@ -187,17 +199,23 @@ TEST_F(Outputs, SocketsAreWrittenThrough) {
 // A node of one's own, where one may make it: the test must not cost the machine its /dev/null.
 TEST_F(Outputs, DevicesAreWrittenThrough) {
     const fs::path null = folder_ / "null", full = folder_ / "full", disk = folder_ / "disk";
-    if (mknod(null.c_str(), S_IFCHR | 0666, makedev(1, 3)) != 0 || mknod(full.c_str(), S_IFCHR | 0666, makedev(1, 7)) != 0 ||
+    if (mknod(null.c_str(), S_IFCHR | 0666, makedev(1, 3)) != 0 ||
+        mknod(full.c_str(), S_IFCHR | 0666, makedev(1, 7)) != 0 ||
         mknod(disk.c_str(), S_IFBLK | 0666, makedev(7, 255)) != 0)
         GTEST_SKIP() << "only root makes devices";
-    if (const int file = open(null.c_str(), O_WRONLY); file < 0) GTEST_SKIP() << "devices don't work in this folder";
-    else close(file);
+    if (const int file = open(null.c_str(), O_WRONLY); file < 0)
+        GTEST_SKIP() << "devices don't work in this folder";
+    else
+        close(file);
     for (const Writer& w : writers()) {
         ASSERT_EQ(refusal([&] { w.write(null); }), "") << w.name;
         EXPECT_TRUE(S_ISCHR(modeOf(null))) << w.name;
-        EXPECT_NE(refusal([&] { w.write(full); }).find("No space left on device"), std::string::npos) << w.name;
+        EXPECT_NE(refusal([&] { w.write(full); }).find("No space left on device"),
+                  std::string::npos)
+            << w.name;
         EXPECT_TRUE(S_ISCHR(modeOf(full))) << w.name;
-        EXPECT_NE(refusal([&] { w.write(disk); }).find("it is a disk"), std::string::npos) << w.name;
+        EXPECT_NE(refusal([&] { w.write(disk); }).find("it is a disk"), std::string::npos)
+            << w.name;
         EXPECT_TRUE(S_ISBLK(modeOf(disk))) << w.name;
     }
     EXPECT_EQ(whereItLeads(null), "") << "any number of outputs may go there";
@@ -206,7 +224,8 @@ TEST_F(Outputs, DevicesAreWrittenThrough) {
 TEST_F(Outputs, OpenDescriptorsAreWrittenThrough) {
     const fs::path log = folder_ / "log";
     for (const Writer& w : writers()) {
-        if (w.name == std::string("particles as HDF5")) continue;   // by its extension, which a descriptor hasn't
+        if (w.name == std::string("particles as HDF5"))
+            continue;  // by its extension, which a descriptor hasn't
         const std::string bytes = expected(w);
         std::ofstream(log) << "before\n";
         const int file = open(log.c_str(), O_WRONLY | O_APPEND);
@@ -218,7 +237,8 @@ TEST_F(Outputs, OpenDescriptorsAreWrittenThrough) {
         EXPECT_NE(refusal([&] { w.write("/dev/fd/" + std::to_string(toRead)); }), "") << w.name;
         close(toRead);
     }
-    EXPECT_TRUE(isStandardOutput("-") && isStandardOutput("/dev/stdout") && isStandardOutput("/dev/fd/1"));
+    EXPECT_TRUE(isStandardOutput("-") && isStandardOutput("/dev/stdout") &&
+                isStandardOutput("/dev/fd/1"));
     EXPECT_FALSE(isStandardOutput("/dev/stderr") || isStandardOutput("1") || isStandardOutput(""));
 }
 
@@ -230,14 +250,24 @@ TEST_F(Outputs, WhatIsReadOnlyIsRefused) {
         for (const int mode : {0444, 0400, 0555, 0}) {
             fs::permissions(file, fs::perms(mode));
             for (const std::string& path : {file, link}) {
-                EXPECT_NE(refusal([&] { w.write(path); }).find("it is read-only"), std::string::npos) << w.name << mode;
-                EXPECT_NE(refusal([&] { requireWritable(path); }).find("it is read-only"), std::string::npos) << w.name << mode;
+                EXPECT_NE(refusal([&] { w.write(path); }).find("it is read-only"),
+                          std::string::npos)
+                    << w.name << mode;
+                EXPECT_NE(refusal([&] { requireWritable(path); }).find("it is read-only"),
+                          std::string::npos)
+                    << w.name << mode;
             }
         }
         fs::permissions(file, fs::perms(0644));
         EXPECT_EQ(bytesOf(file), "before") << w.name;
-        EXPECT_NE(refusal([&] { w.write(folder_ / "sub"); }).find("it is a folder"), std::string::npos) << w.name;
-        EXPECT_NE(refusal([&] { w.write(pathFor(w, "missing/file")); }).find("choose a folder that exists"), std::string::npos) << w.name;
+        EXPECT_NE(refusal([&] { w.write(folder_ / "sub"); }).find("it is a folder"),
+                  std::string::npos)
+            << w.name;
+        EXPECT_NE(refusal([&] {
+                      w.write(pathFor(w, "missing/file"));
+                  }).find("choose a folder that exists"),
+                  std::string::npos)
+            << w.name;
         fs::remove(file), fs::remove(link);
     }
     expectClean();
@@ -248,7 +278,8 @@ TEST_F(Outputs, TwoPathsToOneFileAreOne) {
     fs::create_symlink("file", folder_ / "link");
     fs::create_symlink("sub/../file", folder_ / "around");
     fs::create_symlink("new", folder_ / "dangling");
-    for (const char* name : {"link", "around", "sub/../file", "./file"}) EXPECT_EQ(whereItLeads(folder_ / name), whereItLeads(folder_ / "file")) << name;
+    for (const char* name : {"link", "around", "sub/../file", "./file"})
+        EXPECT_EQ(whereItLeads(folder_ / name), whereItLeads(folder_ / "file")) << name;
     EXPECT_EQ(whereItLeads(folder_ / "dangling"), whereItLeads(folder_ / "new"));
     EXPECT_NE(whereItLeads(folder_ / "new"), whereItLeads(folder_ / "file"));
     EXPECT_EQ(whereItLeads("-"), whereItLeads("/dev/stdout"));
@@ -257,9 +288,11 @@ TEST_F(Outputs, TwoPathsToOneFileAreOne) {
 }
 
 TEST_F(Outputs, AFormatHasItsExtensions) {
-    for (const char* name : {"a.png", "a.PNG", "a", "a.5", "b.jpg/a.png", "/dev/null", "-", "a.out"})
+    for (const char* name :
+         {"a.png", "a.PNG", "a", "a.5", "b.jpg/a.png", "/dev/null", "-", "a.out"})
         EXPECT_EQ(refusal([&] { requireFormat(name, {"png"}); }), "") << name;
-    for (const char* name : {"a.jpg", "a.JPEG", "a.png.bmp", "a.tiff", "a.csv", "a.h5", ".gif/a.webp"}) {
+    for (const char* name :
+         {"a.jpg", "a.JPEG", "a.png.bmp", "a.tiff", "a.csv", "a.h5", ".gif/a.webp"}) {
         const std::string said = refusal([&] { requireFormat(name, {"png"}); });
         EXPECT_NE(said.find("ends in .png"), std::string::npos) << name;
     }
@@ -280,7 +313,8 @@ TEST_F(Outputs, GrowingTextIsThereAtOnceAndShrinks) {
     text.append("three\n");
     EXPECT_EQ(allFrom(follower), "head\none\nthree\n") << "is another file";
     ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
-    auto reader = std::async(std::launch::async, [&] { return allFrom(open(fifo.c_str(), O_RDONLY)); });
+    auto reader =
+        std::async(std::launch::async, [&] { return allFrom(open(fifo.c_str(), O_RDONLY)); });
     {
         GrowingText stream(fifo, "head\n");
         EXPECT_FALSE(stream.shrink(0));

@@ -17,7 +17,8 @@ std::vector<Poured> pouredIn(const std::string& path, const std::string& more) {
     scene.domain.max = {2, 2, 2};
     scene.compute.threads = 1;
     setKnob(scene, fmt::format(R"(fluid.bodies=[{{"shape":"mesh","path":"{}","scale":2,)"
-                               R"("rest_density":800}},{{"max":[0.2,0.2,0.2]}}])", path));
+                               R"("rest_density":800}},{{"max":[0.2,0.2,0.2]}}])",
+                               path));
     setKnob(scene, more);
     return pouredIntoMeshes(scene, makeSimulation(scene)->particles());
 }

@@ -40,31 +40,40 @@ std::vector<Particle> particlesOf(const Scene& scene) {
     }
     return particles;
 }
-double reading(const Scene& scene, const std::string& column, const std::vector<Particle>& particles) {
+double reading(const Scene& scene, const std::string& column,
+               const std::vector<Particle>& particles) {
     const Probes probes(scene);
     const std::vector<double> values = probes.read(particles);
     EXPECT_EQ(values.size(), probes.columns().size());
     return values[probes.column(column)];
 }
-double reading(const Scene& scene, const std::string& column) { return reading(scene, column, particlesOf(scene)); }
+double reading(const Scene& scene, const std::string& column) {
+    return reading(scene, column, particlesOf(scene));
+}
 
 TEST(Probes, ColumnsHaveNamesAndUnits) {
-    const Scene scene = poolScene(3, R"([{"name":"a","position":[1.5,2.2,3.2]},{"kind":"line","name":"b","from":[1,2,3],"to":[2,2,3],"count":2},
+    const Scene scene = poolScene(
+        3,
+        R"([{"name":"a","position":[1.5,2.2,3.2]},{"kind":"line","name":"b","from":[1,2,3],"to":[2,2,3],"count":2},
                                          {"kind":"height","name":"c","position":[1.5,0,3.2]},{"kind":"front","name":"d","axis":"x"}])");
     std::string all;
     const Probes probes(scene);
     for (const Column& c : probes.columns()) all += c.name + "|" + c.unit + " ";
-    EXPECT_EQ(all, "a.pressure|Pa a.density|kg/m³ a.velocity_x|m/s a.velocity_y|m/s a.velocity_z|m/s "
-                   "b[0].pressure|Pa b[0].density|kg/m³ b[0].velocity_x|m/s b[0].velocity_y|m/s b[0].velocity_z|m/s "
-                   "b[1].pressure|Pa b[1].density|kg/m³ b[1].velocity_x|m/s b[1].velocity_y|m/s b[1].velocity_z|m/s "
-                   "c.height|m d.front|m ");
+    EXPECT_EQ(all,
+              "a.pressure|Pa a.density|kg/m³ a.velocity_x|m/s a.velocity_y|m/s a.velocity_z|m/s "
+              "b[0].pressure|Pa b[0].density|kg/m³ b[0].velocity_x|m/s b[0].velocity_y|m/s "
+              "b[0].velocity_z|m/s "
+              "b[1].pressure|Pa b[1].density|kg/m³ b[1].velocity_x|m/s b[1].velocity_y|m/s "
+              "b[1].velocity_z|m/s "
+              "c.height|m d.front|m ");
     EXPECT_FALSE(Probes(Scene{}).any());
     EXPECT_THROW(Probes(scene).column("e.pressure"), Error);
 }
 
 TEST(Probes, LinearFieldsExactlyAlsoAtTheFloorAndOverASensor) {
     for (int dimensions : {2, 3}) {
-        const Scene scene = poolScene(dimensions, R"([{"name":"floor","position":[1.5,2,3.2],"order":"linear"},
+        const Scene scene =
+            poolScene(dimensions, R"([{"name":"floor","position":[1.5,2,3.2],"order":"linear"},
             {"name":"disc","position":[2,2.2,3.2],"radius":0.05,"order":"linear"},
             {"name":"ball","position":[1.5,2.2,3.2],"radius":0.05,"order":"linear"},
             {"name":"corner","position":[2,2.01,3.2],"radius":0.03,"order":"linear"},
@@ -73,8 +82,10 @@ TEST(Probes, LinearFieldsExactlyAlsoAtTheFloorAndOverASensor) {
         EXPECT_NEAR(reading(scene, "floor.density"), 1002, 1e-4);
         EXPECT_NEAR(reading(scene, "floor.velocity_x"), 2, 1e-5);
         EXPECT_NEAR(reading(scene, "floor.velocity_z"), -1.5, 1e-5);
-        EXPECT_NEAR(reading(scene, "disc.pressure"), pressureAt({2, 2.2, 0}), 1e-2) << "points beyond the wall count";
-        EXPECT_NEAR(reading(scene, "corner.pressure"), pressureAt({2, 2.02, 0}), 1e-2) << "points below the floor count";
+        EXPECT_NEAR(reading(scene, "disc.pressure"), pressureAt({2, 2.2, 0}), 1e-2)
+            << "points beyond the wall count";
+        EXPECT_NEAR(reading(scene, "corner.pressure"), pressureAt({2, 2.02, 0}), 1e-2)
+            << "points below the floor count";
         EXPECT_NEAR(reading(scene, "ball.pressure"), pressureAt({1.5, 2.2, 0}), 1e-2);
         EXPECT_NEAR(reading(scene, "line[2].pressure"), pressureAt({1.9, 2.3, 0}), 1e-2);
     }
@@ -82,7 +93,8 @@ TEST(Probes, LinearFieldsExactlyAlsoAtTheFloorAndOverASensor) {
 
 // Half in the air, half in the water: a mean over its points, the dry ones as 0.
 TEST(Probes, ASensorIsAMean) {
-    Scene scene = poolScene(2, R"([{"name":"s","position":[1,2.45,0],"radius":0.09,"order":"linear"}])");
+    Scene scene =
+        poolScene(2, R"([{"name":"s","position":[1,2.45,0],"radius":0.09,"order":"linear"}])");
     EXPECT_NEAR(reading(scene, "s.pressure"), pressureAt({1, 2.39, 0}) / 3, 1e-2);
     EXPECT_NEAR(reading(scene, "s.density"), 1002.39 / 3, 1e-3);
 }
@@ -96,17 +108,22 @@ TEST(Probes, MeanNeverGoesBeyondTheParticlesValues) {
 TEST(Probes, PeriodicSidesAreSeenThrough) {
     Scene scene = poolScene(2, R"([{"name":"side","position":[1,2.2,0]}])");
     EXPECT_NEAR(reading(scene, "side.pressure"), pressureAt({1.01, 2.2, 0}), 1.0);
-    scene.domain.periodicX = true;   // 1 m further on the pressure is 100 Pa higher: half of the neighbours have that
+    scene.domain.periodicX =
+        true;  // 1 m further on the pressure is 100 Pa higher: half of the neighbours have that
     EXPECT_NEAR(reading(scene, "side.pressure"), pressureAt({1.5, 2.2, 0}), 1.0);
 }
 
 TEST(Probes, HeightIsTheSurfaceOfThePool) {
     for (int dimensions : {2, 3})
-        for (const char* x : {"1", "1.5", "2"}) {   // at both walls too
-            const Scene scene = poolScene(dimensions, std::string(R"([{"kind":"height","name":"h","position":[)") + x + ",0,3.2]}]");
-            EXPECT_NEAR(reading(scene, "h.height"), 2.4, 0.05 * scene.simulation.spacing) << dimensions << " at " << x;
+        for (const char* x : {"1", "1.5", "2"}) {  // at both walls too
+            const Scene scene =
+                poolScene(dimensions, std::string(R"([{"kind":"height","name":"h","position":[)") +
+                                          x + ",0,3.2]}]");
+            EXPECT_NEAR(reading(scene, "h.height"), 2.4, 0.05 * scene.simulation.spacing)
+                << dimensions << " at " << x;
         }
-    Scene sideways = poolScene(2, R"([{"kind":"height","name":"h","position":[0,2.1,0],"axis":"x"}])");
+    Scene sideways =
+        poolScene(2, R"([{"kind":"height","name":"h","position":[0,2.1,0],"axis":"x"}])");
     sideways.fluid.bodies[0].max.x = 1.6f;
     EXPECT_NEAR(reading(sideways, "h.height"), 1.6, 0.0005);
 }
@@ -119,10 +136,12 @@ TEST(Probes, HeightCountsThinFilmsOnTheFloorWavesAboveAirAndNoSpray) {
         if (wet) all = pool;
         Particle p = pool[0];
         for (double y = low + 0.005; y < high; y += 0.01)
-            for (double x = 1.505 - width / 2; x < 1.5 + width / 2; x += 0.01) p.position.x = x, p.position.y = y, all.push_back(p);
+            for (double x = 1.505 - width / 2; x < 1.5 + width / 2; x += 0.01)
+                p.position.x = x, p.position.y = y, all.push_back(p);
         return reading(scene, "h.height", all);
     };
-    EXPECT_NEAR(with(2.7, 2.72, 0.02, true), 2.4, 5e-4) << "a drop of four particles is no water level";
+    EXPECT_NEAR(with(2.7, 2.72, 0.02, true), 2.4, 5e-4)
+        << "a drop of four particles is no water level";
     EXPECT_NEAR(with(2.7, 2.8, 0.3, true), 2.8, 5e-4) << "the lip of a breaking wave is";
     EXPECT_NEAR(with(2, 2.02, 0.5, false), 2.02, 1e-3) << "two layers on the floor";
     EXPECT_EQ(with(2, 2, 0, false), 2) << "dry";
@@ -141,7 +160,9 @@ TEST(Probes, CellsFindEveryNeighbour) {
     const Scene scene = poolScene(3, "[]");
     const std::vector<Particle> particles = particlesOf(scene);
     std::vector<Vec3d> points;
-    for (int k = 0; k < 60; ++k) points.push_back({1 + std::fmod(0.37 * k, 1), 2 + std::fmod(0.71 * k, 0.5), 3 + std::fmod(0.13 * k, 0.4)});
+    for (int k = 0; k < 60; ++k)
+        points.push_back({1 + std::fmod(0.37 * k, 1), 2 + std::fmod(0.71 * k, 0.5),
+                          3 + std::fmod(0.13 * k, 0.4)});
     const std::vector<Fields> fields = interpolate(particles, points, 0.09);
     for (size_t i = 0; i < points.size(); ++i) {
         int expected = 0;
@@ -217,8 +238,8 @@ std::vector<Hidden> solidsOverProbes(const std::string& mesh) {
 
 // Every shape, standing, moved, turned and floating, against points that are known to be in or out.
 TEST(Probes, SayThatTheyAreInASolid) {
-    const std::string mesh = boxSurface({0.1, 0.1, 0.1}, {0.3, 0.3, 0.4})
-                                 .write(::testing::TempDir() + "hiding.obj");
+    const std::string mesh =
+        boxSurface({0.1, 0.1, 0.1}, {0.3, 0.3, 0.4}).write(::testing::TempDir() + "hiding.obj");
     std::string probes = "[";
     std::vector<Vec3> points;
     for (int i = 0; i < 125; ++i) {
@@ -251,9 +272,10 @@ TEST(Probes, SayHowMuchOfALineAndWhenAGaugeIsInASolid) {
     const std::string pier = R"("shape":"block","min":[1.4,1,1],"max":[1.6,1.5,2])";
     const std::string line =
         R"([{"kind":"line","name":"l","from":[1.5,1.05,1.5],"to":[1.5,1.95,1.5],"count":10}])";
-    EXPECT_EQ(hiddenIn(solidScene(3, pier, line)),
-              "output.probes[0] (l) 5 of its 10 points are inside solids[0] (thing): no fluid can be "
-              "read there; move one of the two");
+    EXPECT_EQ(
+        hiddenIn(solidScene(3, pier, line)),
+        "output.probes[0] (l) 5 of its 10 points are inside solids[0] (thing): no fluid can be "
+        "read there; move one of the two");
     const auto gaugeAt = [&](float x) {
         return fmt::format(R"([{{"kind":"height","name":"g","position":[{},1,1.5]}}])", x);
     };

@@ -25,7 +25,11 @@ std::vector<std::string> linesOf(const std::string& text) {
 }
 
 TimeSeries example() {
-    TimeSeries series({}, {{"sort", ""}, {"density", ""}, {"density", ""}, {"forces: gravity", ""}, {"stir", "nobody stirs"}});
+    TimeSeries series({}, {{"sort", ""},
+                           {"density", ""},
+                           {"density", ""},
+                           {"forces: gravity", ""},
+                           {"stir", "nobody stirs"}});
     Measurement m;
     m.time = 0.1, m.steps = 3, m.dt = 0.025, m.momentum = {1, 2, 3};
     series.add(m, {});
@@ -45,7 +49,8 @@ TEST(TimeSeries, ForgetsWhatARunHasGoneBackBefore) {
 TEST(TimeSeries, GoesOnHoweverUnitsWereSpelt) {
     const auto goOn = [](const char* unit) {
         TimeSeries series({}, {});
-        series.goOn({}, {"old.csv", {{"time", "s"}, {"step", ""}, {"mean_density", unit}}, {{0, 0, 998}}});
+        series.goOn(
+            {}, {"old.csv", {{"time", "s"}, {"step", ""}, {"mean_density", unit}}, {{0, 0, 998}}});
         return linesOf(series.csv());
     };
     for (const char* same : {"kg/m^3", "kg/m³", "kg m-3"}) {
@@ -90,7 +95,8 @@ TEST(TimeSeries, CsvHasUnitsAndEqualRows) {
     const auto lines = linesOf(example().csv());
     ASSERT_EQ(lines.size(), 3u);
     EXPECT_EQ(lines[0].find("time [s],step,dt [s],kinetic_energy [J]"), 0u);
-    EXPECT_NE(lines[0].find("evaluations,sort [ms],density [ms]"), std::string::npos) << "each pass of the plan once, from the first row on";
+    EXPECT_NE(lines[0].find("evaluations,sort [ms],density [ms]"), std::string::npos)
+        << "each pass of the plan once, from the first row on";
     EXPECT_EQ(lines[1].find("0.1,3,0.025,0,"), 0u) << lines[1];
     EXPECT_EQ(lines[2].find("0.2,3,0.025,nan,"), 0u) << lines[2];
     for (const std::string& line : lines)
@@ -110,13 +116,19 @@ TEST(TimeSeries, UnitsArePerMetreOfDepthInTwoDimensions) {
         series.add(m, {}, {0, 0});
         const std::string header = linesOf(series.csv())[0] + ",", json = series.json();
         using Expected = std::tuple<std::string, std::string, bool>;
-        for (const auto& [name, unit, hasDepth] : std::vector<Expected>{
-                 {"kinetic_energy", "J", true}, {"potential_energy", "J", true},
-                 {"momentum_x", "kg m/s", true}, {"momentum_z", "kg m/s", true},
-                 {"wall.pressure_force_x", "N", true}, {"wall.viscous_force_y", "N", true},
-                 {"wall.torque_z", "N m", true}, {"wall.velocity_x", "m/s", false},
-                 {"mean_density", "kg/m³", false}, {"center_of_mass_x", "m", false},
-                 {"gauge.height", "m", false}, {"gauge.pressure", "Pa", false}}) {
+        for (const auto& [name, unit, hasDepth] :
+             std::vector<Expected>{{"kinetic_energy", "J", true},
+                                   {"potential_energy", "J", true},
+                                   {"momentum_x", "kg m/s", true},
+                                   {"momentum_z", "kg m/s", true},
+                                   {"wall.pressure_force_x", "N", true},
+                                   {"wall.viscous_force_y", "N", true},
+                                   {"wall.torque_z", "N m", true},
+                                   {"wall.velocity_x", "m/s", false},
+                                   {"mean_density", "kg/m³", false},
+                                   {"center_of_mass_x", "m", false},
+                                   {"gauge.height", "m", false},
+                                   {"gauge.pressure", "Pa", false}}) {
             const std::string expected = unit + (hasDepth && dimensions == 2 ? "/m" : "");
             EXPECT_NE(header.find("," + name + " [" + expected + "],"), std::string::npos) << name;
             const std::string inJson = "\"" + name + "\", \"unit\": \"" + expected + "\"}";
@@ -139,12 +151,15 @@ TEST(TimeSeries, MoreColumnsStandBeforeThePasses) {
     TimeSeries series({{"gauge.height", "m"}, {"wall.pressure", "Pa"}}, {{"sort", ""}});
     series.add({}, {{"sort", 4, 2}}, {0.25, NAN});
     const auto lines = linesOf(series.csv());
-    EXPECT_TRUE(lines[0].ends_with("max_speed [m/s],evaluations,gauge.height [m],wall.pressure [Pa],sort [ms]")) << lines[0];
+    EXPECT_TRUE(lines[0].ends_with(
+        "max_speed [m/s],evaluations,gauge.height [m],wall.pressure [Pa],sort [ms]"))
+        << lines[0];
     EXPECT_TRUE(lines[1].ends_with(",0.25,nan,2")) << lines[1];
 }
 
 TEST(TimeSeries, Hdf5HasADatasetWithItsUnitForEachColumn) {
-    const std::string path = testing::TempDir() + "spindrift-series-" + std::to_string(getpid()) + ".h5";
+    const std::string path =
+        testing::TempDir() + "spindrift-series-" + std::to_string(getpid()) + ".h5";
     TimeSeries series({{"gauge.height", "m"}}, {{"sort", ""}});
     Measurement m;
     series.add(m, {}, {1.0 / 3});

@@ -55,9 +55,7 @@ TEST(OrbitCamera, TurnsTheUprightAxesToWhatIsUp) {
         EXPECT_EQ(tipped.upright(tipped.turned(v)), v);
         const Vec3 across = tipped.turned({1, 0, 0}), toward = tipped.turned({0, 0, 1});
         EXPECT_EQ(dot(cross(across, up), toward), 1) << "no mirror";
-        if (up.z == 0) {
-            EXPECT_EQ(toward, (Vec3{0, 0, 1})) << "two dimensions are seen face on";
-        }
+        if (up.z == 0) { EXPECT_EQ(toward, (Vec3{0, 0, 1})) << "two dimensions are seen face on"; }
         EXPECT_GT(dot(tipped.up(), up), 0);
         EXPECT_GT(dot(tipped.eye() - tipped.target, up), 0) << "a positive pitch looks down";
     }

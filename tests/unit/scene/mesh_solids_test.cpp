@@ -384,8 +384,7 @@ TEST(MeshSolids, ObjKeepsTheCoordinatesOfASurvey) {
 
 // The same cube in every kind of file.
 TEST(MeshSolids, GltfIsWhatObjIs) {
-    const Surface box =
-        boxSurface({0.25, -0.5, 0.125}, {0.75, 0.25, 0.625}).inTriangles(false);
+    const Surface box = boxSurface({0.25, -0.5, 0.125}, {0.75, 0.25, 0.625}).inTriangles(false);
     const Vec3d moved{1, 2, -3};
     const auto obj = readMesh(fileOf("cube.obj", box.text()));
     const std::tuple<const char*, std::string, Vec3d, double> files[] = {
@@ -397,8 +396,8 @@ TEST(MeshSolids, GltfIsWhatObjIs) {
         EXPECT_EQ(mesh->triangles().size(), obj->triangles().size()) << name;
         EXPECT_NEAR(mesh->weigh().volume, std::pow(scale, 3) * obj->weigh().volume, 1e-6) << name;
         for (const Vec3d p : {Vec3d{0.5, 0, 0.4}, {0.3, 0.2, 0.2}, {0, 0, 0}, {1, -1, 1}})
-            EXPECT_NEAR(mesh->nearest(offset + scale * p).distance, scale * obj->nearest(p).distance,
-                        1e-6)
+            EXPECT_NEAR(mesh->nearest(offset + scale * p).distance,
+                        scale * obj->nearest(p).distance, 1e-6)
                 << name;
     }
 }
@@ -407,8 +406,7 @@ TEST(MeshSolids, GltfIsWhatObjIs) {
 TEST(MeshSolids, OfASurveyArePlacedByTheirOffset) {
     Surface box = boxSurface({500122.9, 449.9, 649775.9}, {500123.1, 450.1, 649776.1});
     std::string text;
-    for (const Vec3d& p : box.vertices)
-        text += fmt::format("v {} {} {}\n", p.x, p.y, p.z);
+    for (const Vec3d& p : box.vertices) text += fmt::format("v {} {} {}\n", p.x, p.y, p.z);
     box.vertices.clear();
     const std::string path = fileOf("grid.obj", text + box.text());
     const std::string named[] = {"solids", "fluid.bodies", "objects"};
@@ -419,8 +417,9 @@ TEST(MeshSolids, OfASurveyArePlacedByTheirOffset) {
         scene.fluid.bodies = {Body{{.max{0.1f, 0.1f, 0.1f}}}};
         const auto complaint = [&](const std::string& offset) -> std::string {
             try {
-                setKnob(scene, fmt::format("{}=[{{\"shape\":\"{}\",\"path\":\"{}\",\"offset\":[{}]}}]",
-                                           list, list == "objects" ? "shell" : "mesh", path, offset));
+                setKnob(scene,
+                        fmt::format("{}=[{{\"shape\":\"{}\",\"path\":\"{}\",\"offset\":[{}]}}]",
+                                    list, list == "objects" ? "shell" : "mesh", path, offset));
                 checkScene(scene, "a");
             } catch (const Error& error) { return error.what(); }
             return "";
@@ -458,16 +457,20 @@ TEST(MeshSolids, TellThatTheirFileMayBeInMillimetres) {
             scene.fluid.bodies = {Body{{.max{1, 1, 1}}}};
             std::string said;
             try {
-                setKnob(scene, fmt::format(R"({}=[{{"shape":"{}","path":"{}"}}])", list, shape, path));
+                setKnob(scene,
+                        fmt::format(R"({}=[{{"shape":"{}","path":"{}"}}])", list, shape, path));
                 checkScene(scene, "a");
             } catch (const Error& error) { said = error.what(); }
             const bool solid = std::string(list) == "solids";
             const bool expected = 200 > (solid ? 20 : 1) * side;
-            const bool units = said.find(fmt::format("{}[0].scale: the mesh is 200 m large, the domain "
-                                                     "{:g} m; ", list, side)) != std::string::npos;
+            const bool units =
+                said.find(fmt::format("{}[0].scale: the mesh is 200 m large, the domain "
+                                      "{:g} m; ",
+                                      list, side)) != std::string::npos;
             EXPECT_EQ(units, expected) << list << " in " << side << ": " << said;
             if (side == 1) {
-                EXPECT_NE(said.find("if the file is in millimetres, set it to 0.001"), std::string::npos)
+                EXPECT_NE(said.find("if the file is in millimetres, set it to 0.001"),
+                          std::string::npos)
                     << said;
             }
         }
@@ -476,9 +479,9 @@ TEST(MeshSolids, TellThatTheirFileMayBeInMillimetres) {
 // Whatever covers all fluid: a mesh several tanks large, a block, a plane.
 TEST(MeshSolids, ThatLeaveNoFluidAreRefused) {
     const std::string path = fileOf("large.obj", boxSurface({-1, -1, -1}, {3, 3, 3}).text());
-    for (const std::string& solid :
-         {R"("shape":"mesh","path":")" + path + "\"", std::string(R"("min":[-1,-1,-1],"max":[3,3,3])"),
-          std::string(R"("shape":"plane","center":[0,2,0])")}) {
+    for (const std::string& solid : {R"("shape":"mesh","path":")" + path + "\"",
+                                     std::string(R"("min":[-1,-1,-1],"max":[3,3,3])"),
+                                     std::string(R"("shape":"plane","center":[0,2,0])")}) {
         Scene scene;
         scene.simulation.spacing = 0.1f;
         scene.domain.max = {1, 1, 1};

@@ -23,7 +23,8 @@ namespace fs = std::filesystem;
 
 class ParticleFiles : public testing::Test {
 protected:
-    ParticleFiles() : folder(fs::temp_directory_path() / ("spindrift-particles-" + std::to_string(getpid()))) {
+    ParticleFiles()
+        : folder(fs::temp_directory_path() / ("spindrift-particles-" + std::to_string(getpid()))) {
         fs::create_directories(folder);
     }
     ~ParticleFiles() override { fs::remove_all(folder); }
@@ -37,7 +38,8 @@ protected:
         } catch (const Error& error) {
             EXPECT_EQ(error.exit, Exit::Scene);
             EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
-            EXPECT_NE(std::string(error.what()).find(path), std::string::npos) << "which file? " << error.what();
+            EXPECT_NE(std::string(error.what()).find(path), std::string::npos)
+                << "which file? " << error.what();
             return error.what();
         }
         return "";
@@ -64,7 +66,9 @@ protected:
 };
 
 TEST_F(ParticleFiles, ColumnsInAnyOrderWithUnitsCommentsAndGaps) {
-    const std::string path = write("# by hand\r\n vz [m/s],x , y,z,vx,vy,rho [kg/m^3]\r\n\r\n3,-0.5,2.5,3.5,1,2,998.5\r\n# more\r\n-3,1e-1,.5,-7,0,0,1001");
+    const std::string path = write(
+        "# by hand\r\n vz [m/s],x , y,z,vx,vy,rho [kg/m^3]\r\n\r\n3,-0.5,2.5,3.5,1,2,998.5\r\n# "
+        "more\r\n-3,1e-1,.5,-7,0,0,1001");
     const ParticleTable t = readParticles(path);
     ASSERT_EQ(t.positions.size(), 2u);
     EXPECT_EQ(t.positions[0], (Vec3d{-0.5, 2.5, 3.5}));
@@ -81,7 +85,8 @@ TEST_F(ParticleFiles, WhatIsWrittenIsReadBitByBit) {
     ParticleTable t;
     for (int i = 0; i < 5000; ++i) {
         const double s = std::sin(i + 0.1);
-        t.positions.push_back({s, 1e-20 * s, 1e10 / (i + 1)}), t.velocities.push_back({-s, s / 3, double(float(s))});
+        t.positions.push_back({s, 1e-20 * s, 1e10 / (i + 1)}),
+            t.velocities.push_back({-s, s / 3, double(float(s))});
         t.densities.push_back(1000 + s), t.pressures.push_back(-1e5 * s);
         t.masses.push_back(0.008 + s / 1000);
     }
@@ -163,8 +168,9 @@ TEST_F(ParticleFiles, MistakesAreNamedByLine) {
     expectComplaint("x,y,z\n1,2,nan\n", "line 2: z is no number");
     expectComplaint("x,y,z,rho\n1,2,3,-4\n", "line 2: rho = -4 kg/m³ is below 0");
     expectComplaint("x,y,z,mass\n1,2,3,0\n", "line 2: mass = 0 kg is not above 0");
-    expectComplaint("x,y,z\n1,2\n1,2,3,4\n1,2,3\n\n1\n1\n", "line 2: 2 values for 3 columns; line 3: 4 values for 3 columns; "
-                                                            "line 6: 1 values for 3 columns; and 1 more");
+    expectComplaint("x,y,z\n1,2\n1,2,3,4\n1,2,3\n\n1\n1\n",
+                    "line 2: 2 values for 3 columns; line 3: 4 values for 3 columns; "
+                    "line 6: 1 values for 3 columns; and 1 more");
     expectComplaint("x,y,z,vx\n1,2,3,4\n", "has some of the columns vx, vy, vz");
     expectComplaint("x,y,z,w\n1,2,3,4\n", "unknown column \"w\"; known: x, y, z, vx");
     expectComplaint("x,y,x\n1,2,3\n", "names a column twice");
@@ -188,9 +194,11 @@ TEST_F(ParticleFiles, MistakesInHdf5) {
     make({1, 2}, {3, 4}, "z");
     EXPECT_EQ(complaint(path), "");
     make({1, 2}, {3, NAN}, "z");
-    EXPECT_NE(complaint(path).find("particle 1: y is no number"), std::string::npos) << complaint(path);
+    EXPECT_NE(complaint(path).find("particle 1: y is no number"), std::string::npos)
+        << complaint(path);
     make({1, 2}, {3}, "z");
-    EXPECT_NE(complaint(path).find("1 values of y, but 2 of x"), std::string::npos) << complaint(path);
+    EXPECT_NE(complaint(path).find("1 values of y, but 2 of x"), std::string::npos)
+        << complaint(path);
     make({1, 2}, {3, 4}, "w");
     EXPECT_NE(complaint(path).find("no column z"), std::string::npos) << complaint(path);
     make({}, {}, "z");
@@ -201,7 +209,8 @@ TEST_F(ParticleFiles, MistakesInHdf5) {
 }
 
 TEST_F(ParticleFiles, ABodyHasTheFilesParticles) {
-    const std::string path = write("x,y,z,vx,vy,vz,rho,p\n-0.5,2.5,3.5,1,2,3,1010,77\n-0.25,2.5,3.5,0,0,0,990,0\n");
+    const std::string path =
+        write("x,y,z,vx,vy,vz,rho,p\n-0.5,2.5,3.5,1,2,3,1010,77\n-0.25,2.5,3.5,0,0,0,990,0\n");
     const Scene scene = sceneOf(path, Formulation::DeltaSph);
     EXPECT_NO_THROW(checkScene(scene));
     EXPECT_EQ(countParticles(scene).fluid, 2);
@@ -214,7 +223,8 @@ TEST_F(ParticleFiles, ABodyHasTheFilesParticles) {
     EXPECT_EQ(p[1].density, 990);
     // Beside another body: its density is the rest density, and it stays where it is.
     Scene both = scene;
-    both.fluid.bodies.insert(both.fluid.bodies.begin(), Body{{.min{-1, 2, 3}, .max{-0.7f, 2.3f, 3.3f}}});
+    both.fluid.bodies.insert(both.fluid.bodies.begin(),
+                             Body{{.min{-1, 2, 3}, .max{-0.7f, 2.3f, 3.3f}}});
     const std::vector<Particle> more = makeSimulation(both)->particles();
     ASSERT_EQ(more.size(), 29u);
     EXPECT_EQ(more[0].density, 1000);
@@ -232,8 +242,13 @@ TEST_F(ParticleFiles, OutsideTheDomainIsNamedByLine) {
         checkScene(scene, "s.json");
         ADD_FAILURE() << "was taken";
     } catch (const Error& error) {
-        EXPECT_NE(std::string(error.what()).find("s.json: fluid.bodies[0].path: "), std::string::npos) << error.what();
-        EXPECT_NE(std::string(error.what()).find("line 4: y = 5 m is outside the domain's 2 to 3 m"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("s.json: fluid.bodies[0].path: "),
+                  std::string::npos)
+            << error.what();
+        EXPECT_NE(
+            std::string(error.what()).find("line 4: y = 5 m is outside the domain's 2 to 3 m"),
+            std::string::npos)
+            << error.what();
     }
 }
 
@@ -333,14 +348,17 @@ TEST_F(ParticleFiles, LoneParticlesOfTheClassicFormulationAreTaken) {
     for (const char* name : {"lone.csv", "lone.h5"}) {
         const std::string path = (folder / name).string();
         saveParticles(path, simulation->particles());
-        for (const Formulation next : {Formulation::Classic, Formulation::Wcsph, Formulation::DeltaSph}) {
+        for (const Formulation next :
+             {Formulation::Classic, Formulation::Wcsph, Formulation::DeltaSph}) {
             Scene again = sceneOf(path, next);
-            again.simulation.kernel = Kernel::CubicSpline;   // the only one of the classic formulation
+            again.simulation.kernel =
+                Kernel::CubicSpline;  // the only one of the classic formulation
             EXPECT_EQ(refusalOf(again), "") << name;
             const auto run = makeSimulation(again);
             EXPECT_EQ(run->fluidCount(), 1);
             if (next == Formulation::DeltaSph) {
-                EXPECT_EQ(run->particles()[0].density, 1000) << "at rest, when nobody says otherwise";
+                EXPECT_EQ(run->particles()[0].density, 1000)
+                    << "at rest, when nobody says otherwise";
             }
         }
     }
@@ -383,23 +401,29 @@ TEST_F(ParticleFiles, StatesOfViolentRunsAreTaken) {
 
 TEST_F(ParticleFiles, ARelativePathStartsAtTheSceneFile) {
     write("x,y,z\n0.5,0.5,0.5\n", "drops.csv");
-    const std::string file = write(R"({"version": 2, "fluid": {"bodies": [{"shape": "file", "path": "drops.csv"}]}})", "s.json");
+    const std::string file =
+        write(R"({"version": 2, "fluid": {"bodies": [{"shape": "file", "path": "drops.csv"}]}})",
+              "s.json");
     const Scene scene = loadScene(file);
     EXPECT_EQ(scene.fluid.bodies[0].path, (folder / "drops.csv").string());
     EXPECT_NO_THROW(checkScene(scene));
-    EXPECT_EQ(loadScene(write(writeScene(scene), "again.json")).fluid.bodies[0].path, scene.fluid.bodies[0].path);
+    EXPECT_EQ(loadScene(write(writeScene(scene), "again.json")).fluid.bodies[0].path,
+              scene.fluid.bodies[0].path);
 }
 
 // The memory that it would take is looked at first.
 TEST_F(ParticleFiles, FilesAreCountedForTheMemory) {
     const std::string path = (folder / "many.h5").string();
     ASSERT_TRUE(hdf5::writeFile(path, [](hid_t file) {
-        const hsize_t size = 999'999'999;   // nothing of it is stored
+        const hsize_t size = 999'999'999;  // nothing of it is stored
         const hdf5::Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose, "space");
         for (const char* name : {"x", "y", "z"})
-            hdf5::Handle(H5Dcreate2(file, name, H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose, name);
+            hdf5::Handle(H5Dcreate2(file, name, H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT,
+                                    H5P_DEFAULT),
+                         H5Dclose, name);
     }));
-    if (double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE)) > 300e9) GTEST_SKIP() << "this machine could hold it";
+    if (double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE)) > 300e9)
+        GTEST_SKIP() << "this machine could hold it";
     try {
         checkScene(sceneOf(path, Formulation::Wcsph));
         ADD_FAILURE() << "was taken";

@@ -28,9 +28,12 @@ Scene relaxedScene(int dimensions, float spacing, const std::vector<std::string>
     return scene;
 }
 const std::vector<std::string> Periodic2 = {"domain.periodic_x=true", "domain.periodic_y=true"};
-const std::vector<std::string> Periodic3 = {"domain.periodic_x=true", "domain.periodic_y=true", "domain.periodic_z=true"};
+const std::vector<std::string> Periodic3 = {"domain.periodic_x=true", "domain.periodic_y=true",
+                                            "domain.periodic_z=true"};
 
-struct Evenness { double mean = 0, scatter = 0, closest = 1e9; };   // of sum V W; its rms / mean; in spacings
+struct Evenness {
+    double mean = 0, scatter = 0, closest = 1e9;
+};  // of sum V W; its rms / mean; in spacings
 
 // Of the particles that see no surface that is not `inside`; walls count as their particles do.
 Evenness evennessOf(const Scene& scene, const Placement& p, double margin) {
@@ -43,7 +46,8 @@ Evenness evennessOf(const Scene& scene, const Placement& p, double margin) {
     for (const Vec3& at : p.positions) {
         double sum = 0;
         bool inside = true;
-        for (int k = 0; k < d; ++k) inside &= scene.domain.periodic(k) || (at[k] > margin * R && at[k] < L - margin * R);
+        for (int k = 0; k < d; ++k)
+            inside &= scene.domain.periodic(k) || (at[k] > margin * R && at[k] < L - margin * R);
         if (!inside) continue;
         for (const Vec3& other : p.positions) {
             Vec3d r = toDouble(at - other);
@@ -74,7 +78,7 @@ TEST(Relax, APeriodicBoxIsEvenAndInNoOrder) {
         EXPECT_EQ(p.positions.size(), dimensions == 2 ? 1600u : 4096u);
         const Evenness e = evennessOf(scene, p, 0);
         EXPECT_LT(e.scatter, 0.005) << dimensions;
-        EXPECT_NEAR(e.mean, 1.01, 0.005);   // as on a lattice, which has 1.013 and 1.010
+        EXPECT_NEAR(e.mean, 1.01, 0.005);  // as on a lattice, which has 1.013 and 1.010
         EXPECT_GT(e.closest, 0.8) << dimensions;
         for (int k = 0; k < dimensions; ++k) EXPECT_LT(orderAlong(p, k, dx), 0.2);
         for (const Vec3& x : p.positions) ASSERT_TRUE(dimensions == 3 || x.z == 0.5f);
@@ -87,7 +91,8 @@ TEST(Relax, WallsAndCornersArePackedToo) {
     EXPECT_EQ(p.positions.size(), 1600u);
     EXPECT_LT(evennessOf(scene, p, 1).scatter, 0.005);
     EXPECT_GT(evennessOf(scene, p, 0).closest, 0.75);
-    // Three spacings along each wall hold what three rows of the lattice do; the first particles stand off the wall as those do.
+    // Three spacings along each wall hold what three rows of the lattice do; the first particles
+    // stand off the wall as those do.
     for (int k = 0; k < 2; ++k)
         for (bool upper : {false, true}) {
             int beside = 0;
@@ -103,9 +108,12 @@ TEST(Relax, WallsAndCornersArePackedToo) {
 TEST(Relax, ADropIsPackedToItsSurface) {
     for (int dimensions : {2, 3}) {
         const double r = 0.3, dx = dimensions == 2 ? 0.02 : 0.05;
-        const Scene scene = relaxedScene(dimensions, float(dx), {R"(fluid.bodies=[{"shape":"sphere","center":[0.5,0.5,0.5],"radius":0.3}])"});
+        const Scene scene = relaxedScene(
+            dimensions, float(dx),
+            {R"(fluid.bodies=[{"shape":"sphere","center":[0.5,0.5,0.5],"radius":0.3}])"});
         const Placement p = placeParticles(scene);
-        const double volume = dimensions == 2 ? pi * r * r / (dx * dx) : 4 * pi / 3 * r * r * r / (dx * dx * dx);
+        const double volume =
+            dimensions == 2 ? pi * r * r / (dx * dx) : 4 * pi / 3 * r * r * r / (dx * dx * dx);
         EXPECT_NEAR(double(p.positions.size()), volume, 0.005 * volume) << "as many as fit";
         EXPECT_GE(countParticles(scene).fluid, int64_t(p.positions.size()));
         double second = 0;
@@ -135,7 +143,9 @@ TEST(Relax, OneSeedOnePlacementForAnyNumberOfThreads) {
 
 // The joint of two bodies is no surface, and each keeps its own velocity.
 TEST(Relax, BodiesSideBySideArePackedTogether) {
-    const Scene scene = relaxedScene(2, 0.025f, {R"(fluid.bodies=[{"min":[0,0,0],"max":[0.5,1,1],"velocity":[1,0,0]},{"min":[0.5,0,0],"max":[1,1,1]}])"});
+    const Scene scene = relaxedScene(
+        2, 0.025f,
+        {R"(fluid.bodies=[{"min":[0,0,0],"max":[0.5,1,1],"velocity":[1,0,0]},{"min":[0.5,0,0],"max":[1,1,1]}])"});
     const Placement p = placeParticles(scene);
     EXPECT_EQ(p.positions.size(), 1600u);
     EXPECT_LT(evennessOf(scene, p, 1).scatter, 0.005);

@@ -21,11 +21,9 @@ std::vector<std::string> configs() {
 
 // Converts to anything, so that a struct of n fields can be initialised by at most n of them.
 struct Anything {
-    template <class T>
-    operator T() const;
+    template <class T> operator T() const;
 };
-template <class S, class... Fields>
-consteval int fieldCount() {
+template <class S, class... Fields> consteval int fieldCount() {
     if constexpr (requires { S{Fields{}..., Anything{}}; })
         return fieldCount<S, Fields..., Anything>();
     else
@@ -39,11 +37,11 @@ int knobCount(const Scene& scene) {
 }
 
 // Of all kinds together.
-template <class Member>
-int memberKnobs() {
+template <class Member> int memberKnobs() {
     std::set<std::string> names;
     for (const Member& member : oneOfEachKind<Member>())
-        visitMember(member, "m", [&](const std::string& path, const auto&, const Knob&) { names.insert(path); });
+        visitMember(member, "m",
+                    [&](const std::string& path, const auto&, const Knob&) { names.insert(path); });
     return int(names.size());
 }
 
@@ -60,14 +58,14 @@ TEST(Schema, EveryFieldOfASceneHasItsLine) {
     const int structs = 14;  // window ... output and the lists, each one field of Scene
     const int fields = fieldCount<Scene>() - structs + fieldCount<Window>() +
                        fieldCount<Compute>() + fieldCount<SimulationKnobs>() +
-                       fieldCount<Domain>() + fieldCount<Walls>() + fieldCount<Contact>() + fieldCount<Fluid>() -
-                       1 /* bodies */ + fieldCount<TimeKnobs>() + fieldCount<View>() -
-                       2 /* camera and stirrer */ + fieldCount<Camera>() + fieldCount<Stirrer>() +
-                       fieldCount<Output>() -
-                       1 /* probes */;
+                       fieldCount<Domain>() + fieldCount<Walls>() + fieldCount<Contact>() +
+                       fieldCount<Fluid>() - 1 /* bodies */ + fieldCount<TimeKnobs>() +
+                       fieldCount<View>() - 2 /* camera and stirrer */ + fieldCount<Camera>() +
+                       fieldCount<Stirrer>() + fieldCount<Output>() - 1 /* probes */;
     EXPECT_EQ(knobCount(scene), fields);
 
-    EXPECT_EQ(memberKnobs<Body>(), fieldCount<Form>() + fieldCount<Body>() - 2 /* the base, and normal of solids */);
+    EXPECT_EQ(memberKnobs<Body>(),
+              fieldCount<Form>() + fieldCount<Body>() - 2 /* the base, and normal of solids */);
     EXPECT_EQ(memberKnobs<Solid>(), fieldCount<Form>() + fieldCount<Solid>() - 1);
     EXPECT_EQ(memberKnobs<Object>(), fieldCount<Object>());
     EXPECT_EQ(memberKnobs<Grip>(), fieldCount<Grip>());
@@ -118,9 +116,11 @@ struct Change {
         if (path != "version") v = v + 1 <= k.max ? v + 1 : v - 1;
     }
     void operator()(const std::string&, bool& v, const Knob&) const { v = !v; }
-    void operator()(const std::string&, Keyframes& v, const Knob&) const { v = {{0, {1, 2, 3}, 4}, {0.1f, {-1, 0, 0}, 0}}; }
+    void operator()(const std::string&, Keyframes& v, const Knob&) const {
+        v = {{0, {1, 2, 3}, 4}, {0.1f, {-1, 0, 0}, 0}};
+    }
     void operator()(const std::string& path, std::string& v, const Knob&) const {
-        if (path.ends_with(".motion")) return;   // is read and forgotten
+        if (path.ends_with(".motion")) return;  // is read and forgotten
         v += " \"new\" \\ \n\t \xc3\xbc // no comment";
     }
     void operator()(const std::string&, Vec3& v, const Knob&) const {
@@ -132,7 +132,8 @@ struct Change {
     template <class E>
     requires std::is_enum_v<E>
     void operator()(const std::string& path, E& v, const Knob&) const {
-        if (!path.ends_with("shape") && !path.ends_with("kind")) v = E((int(v) + 1) % int(enumNames(v).size()));
+        if (!path.ends_with("shape") && !path.ends_with("kind"))
+            v = E((int(v) + 1) % int(enumNames(v).size()));
     }
 };
 
@@ -194,8 +195,8 @@ TEST(Schema, JsonSchemaHasEveryKnob) {
 
 TEST(Schema, TableHasEveryKnobAndItsUnit) {
     const std::string table = knobTable();
-    for (const char* text :
-         {"fluid.viscosity", "Pa s", "fluid.bodies[i].height", "wendland_c2|cubic_spline|wendland_c4"})
+    for (const char* text : {"fluid.viscosity", "Pa s", "fluid.bodies[i].height",
+                             "wendland_c2|cubic_spline|wendland_c4"})
         EXPECT_NE(table.find(text), std::string::npos) << text;
 }
 

@@ -64,11 +64,17 @@ TEST(LocalSteps, AreShorterWhereFluidIsHit) {
         while (simulation->measure().time < 0.15) simulation->step();
         return simulation->measure();
     };
-    const Measurement local = runFor(TimeMode::Local, 0.4f), global = runFor(TimeMode::Cfl, 0.4f), fine = runFor(TimeMode::Cfl, 0.1f);
-    const double n = 2 * 12 * 12 * 12, momentum = 1000 * 0.6 * 0.6 * 0.6 * 2, perStep = local.evaluations / n / double(local.steps);
-    std::printf("collision: %d local steps of %.2f evaluations, %d global; kinetic energy %.2f J, %.2f global, %.2f with a quarter of the step; momentum "
-                "%.1e lost, %.1e across\n", int(local.steps), perStep, int(global.steps), local.kineticEnergy, global.kineticEnergy, fine.kineticEnergy,
-                1 - local.momentum.x / momentum, std::hypot(local.momentum.y, local.momentum.z) / momentum);
+    const Measurement local = runFor(TimeMode::Local, 0.4f), global = runFor(TimeMode::Cfl, 0.4f),
+                      fine = runFor(TimeMode::Cfl, 0.1f);
+    const double n = 2 * 12 * 12 * 12, momentum = 1000 * 0.6 * 0.6 * 0.6 * 2,
+                 perStep = local.evaluations / n / double(local.steps);
+    std::printf(
+        "collision: %d local steps of %.2f evaluations, %d global; kinetic energy %.2f J, %.2f "
+        "global, %.2f with a quarter of the step; momentum "
+        "%.1e lost, %.1e across\n",
+        int(local.steps), perStep, int(global.steps), local.kineticEnergy, global.kineticEnergy,
+        fine.kineticEnergy, 1 - local.momentum.x / momentum,
+        std::hypot(local.momentum.y, local.momentum.z) / momentum);
     EXPECT_GT(perStep, 1.01);
     EXPECT_LT(double(local.steps) * perStep, 0.8 * double(global.steps));
     EXPECT_NEAR(local.kineticEnergy, fine.kineticEnergy, 0.01 * fine.kineticEnergy);
@@ -76,8 +82,9 @@ TEST(LocalSteps, AreShorterWhereFluidIsHit) {
     EXPECT_LT(std::hypot(local.momentum.y, local.momentum.z), 1e-3 * momentum);
 }
 
-// In double precision neighbours are found without lists, and each pair counts twice: whoever is left out where only some are due, differs. (With lists
-// all of a cluster are evaluated when one is due, so that densities are not quite as old.)
+// In double precision neighbours are found without lists, and each pair counts twice: whoever is
+// left out where only some are due, differs. (With lists all of a cluster are evaluated when one is
+// due, so that densities are not quite as old.)
 TEST(LocalSteps, MissNoNeighbour) {
     Scene scene = collision();
     scene.time.mode = TimeMode::Local;
@@ -88,14 +95,17 @@ TEST(LocalSteps, MissNoNeighbour) {
     const double n = lists->fluidCount();
     for (auto* s : {lists.get(), rows.get()}) s->step(30);
     EXPECT_GT(lists->measure().evaluations / n, 32) << "all were due all the time";
-    EXPECT_NEAR(lists->measure().evaluations, rows->measure().evaluations, 1e-3 * rows->measure().evaluations);
+    EXPECT_NEAR(lists->measure().evaluations, rows->measure().evaluations,
+                1e-3 * rows->measure().evaluations);
     const std::vector<Particle> a = lists->particles(), b = rows->particles();
     double position = 0, density = 0;
     for (size_t i = 0; i < a.size(); ++i) {
         position = std::max(position, length(a[i].position - b[i].position) / 0.05);
         density += std::abs(a[i].density - b[i].density) / 1000 / n;
     }
-    std::printf("after %.1f evaluations: %.1e spacings at most, %.1e of the density apart in the mean\n", lists->measure().evaluations / n, position, density);
+    std::printf(
+        "after %.1f evaluations: %.1e spacings at most, %.1e of the density apart in the mean\n",
+        lists->measure().evaluations / n, position, density);
     EXPECT_LT(position, 0.05);
     EXPECT_LT(density, 2e-3);
 }
@@ -112,8 +122,8 @@ Scene pool() {
     return s;
 }
 
-// Mean difference of layers' pressures from the hydrostatic one, relative. Single particles' pressures
-// depend on where each came to lie, which differs from run to run.
+// Mean difference of layers' pressures from the hydrostatic one, relative. Single particles'
+// pressures depend on where each came to lie, which differs from run to run.
 double pressureError(Simulation& simulation) {
     constexpr int Layers = 5;
     double sum[Layers] = {}, exact[Layers] = {}, error = 0, all = 0;
@@ -144,16 +154,19 @@ TEST(Rest, ComesToAPoolAndEndsWhenItIsDisturbed) {
     while (global->measure().time < m.time) global->step(10);
     scene.time.mode = TimeMode::Local;
     const double error = pressureError(*simulation), usual = pressureError(*global);
-    std::printf("pool: rests after %.2f s, pressure %.2f %% off, %.2f without rest\n", m.time, 100 * error, 100 * usual);
-    EXPECT_LT(error, 1.3 * usual);   // half and twice the step: 1.1 and 0.7 times
+    std::printf("pool: rests after %.2f s, pressure %.2f %% off, %.2f without rest\n", m.time,
+                100 * error, 100 * usual);
+    EXPECT_LT(error, 1.3 * usual);  // half and twice the step: 1.1 and 0.7 times
     EXPECT_NEAR(m.centerOfMass.y, global->measure().centerOfMass.y, 5e-4);
     EXPECT_EQ(evaluationsOf(*simulation, 100), 0);
 
     // The mouse in a corner wakes what is near, and only that.
     const std::vector<Particle> all = simulation->particles();
-    const auto corner = std::min_element(all.begin(), all.end(), [](const Particle& a, const Particle& b) {
-        return std::hypot(a.position.x - 0.1, a.position.y - 0.2) < std::hypot(b.position.x - 0.1, b.position.y - 0.2);
-    });
+    const auto corner =
+        std::min_element(all.begin(), all.end(), [](const Particle& a, const Particle& b) {
+            return std::hypot(a.position.x - 0.1, a.position.y - 0.2) <
+                   std::hypot(b.position.x - 0.1, b.position.y - 0.2);
+        });
     simulation->stir({toFloat(corner->position), 0.06f, {1, 0, 0}});
     const double woken = evaluationsOf(*simulation, 24);
     simulation->stir({});
@@ -168,8 +181,9 @@ TEST(Rest, ComesToAPoolAndEndsWhenItIsDisturbed) {
     EXPECT_GT(simulation->measure().centerOfMass.x, m.centerOfMass.x + 0.001);
 }
 
-// The largest difference of an awake particle's density from the sum over all particles, where walls have no share. Forces were evaluated a straight line back
-// from where particles are; somebody who rests says what the sum is in kg/m^3.
+// The largest difference of an awake particle's density from the sum over all particles, where
+// walls have no share. Forces were evaluated a straight line back from where particles are;
+// somebody who rests says what the sum is in kg/m^3.
 double densityError(Simulation& simulation, double R) {
     std::vector<Particle> particles = simulation.particles();
     const double dt = simulation.clock().dt;
@@ -178,34 +192,42 @@ double densityError(Simulation& simulation, double R) {
     for (bool calibrates : {true, false})
         for (const Particle& p : particles) {
             const bool rests = length(p.velocity) == 0;
-            if (rests != calibrates || std::abs(p.position.x - 0.6) > 0.5 || std::abs(p.position.y - 0.15) > 0.06) continue;
+            if (rests != calibrates || std::abs(p.position.x - 0.6) > 0.5 ||
+                std::abs(p.position.y - 0.15) > 0.06)
+                continue;
             double sum = 0;
             for (const Particle& other : particles) {
                 const double q = length(p.position - other.position) / R;
                 if (q < 1) sum += std::pow(1 - q, 4) * (4 * q + 1);
             }
-            if (calibrates) scale = p.density / sum;
-            else worst = std::max(worst, std::abs(scale * sum / p.density - 1));
+            if (calibrates)
+                scale = p.density / sum;
+            else
+                worst = std::max(worst, std::abs(scale * sum / p.density - 1));
         }
     return worst;
 }
 
-// Where few are awake lists reach further and are kept for longer. While all who are awake take the same step, as they do nearly always here, their densities
-// are exact; somebody left out for as long as lists are kept would show.
+// Where few are awake lists reach further and are kept for longer. While all who are awake take the
+// same step, as they do nearly always here, their densities are exact; somebody left out for as
+// long as lists are kept would show.
 TEST(Rest, ListsOfThoseAwakeMissNobody) {
     for (Simd simd : {Simd::Auto, Simd::Sse}) {
         Scene scene = pool();
         scene.compute.simd = simd;
         const auto simulation = makeSimulation(scene);
         for (int k = 0; k < 400 && evaluationsOf(*simulation, 50) > 0; ++k) {}
-        simulation->stir({{0.6f, 0.15f, float(simulation->particle(0).position.z)}, 0.03f, {0.3f, 0, 0}});
+        simulation->stir(
+            {{0.6f, 0.15f, float(simulation->particle(0).position.z)}, 0.03f, {0.3f, 0, 0}});
         int exact = 0;
         for (int k = 0; k < 40; ++k) {
             simulation->step(3);
             const double awake = simulation->clock().awake;
-            exact += awake > 0.02 && awake < 0.9 && densityError(*simulation, supportRadius(scene)) < 1e-5;
+            exact += awake > 0.02 && awake < 0.9 &&
+                     densityError(*simulation, supportRadius(scene)) < 1e-5;
         }
-        std::printf("densities exact in %d of 40 looks, %.0f %% awake at the end\n", exact, 100 * simulation->clock().awake);
+        std::printf("densities exact in %d of 40 looks, %.0f %% awake at the end\n", exact,
+                    100 * simulation->clock().awake);
         EXPECT_GT(exact, 25);
     }
 }

@@ -23,7 +23,8 @@ struct Row {
     napsTest::View v{};
 
     Row() {
-        v.fluid.slots = 3, v.fluid.id = ids.data(), v.fluid.level = {level.data()}, v.fluid.velocity = {velocity.data()};
+        v.fluid.slots = 3, v.fluid.id = ids.data(), v.fluid.level = {level.data()},
+        v.fluid.velocity = {velocity.data()};
         v.fluidNearFluid.cellStart = cellStart.data();
         v.grid.cells = {3, 1, 1};
         v.blocks = {{3, 1, 1}, {1, 1, 1}, speed2.data(), calm.data(), nap.data(), nullptr, nullptr};

@@ -1,4 +1,5 @@
-// What each shipped scene does in a step, and what it holds in memory: nothing that it doesn't need.
+// What each shipped scene does in a step, and what it holds in memory: nothing that it doesn't
+// need.
 #include "scene/json.h"
 #include "sim/simulation.h"
 
@@ -7,12 +8,19 @@
 namespace spindrift {
 namespace {
 
-struct Expected { const char *scene, *passes; int bytes; };   // bytes: a particle, at most
+struct Expected {
+    const char *scene, *passes;
+    int bytes;
+};  // bytes: a particle, at most
 
-const char* const Splash = "sort neighbours density walls forces extremes time-step integrate laminar-viscosity artificial-viscosity";
+const char* const Splash =
+    "sort neighbours density walls forces extremes time-step integrate laminar-viscosity "
+    "artificial-viscosity";
 const char* const WithMovingSolids =
-    "solids sort neighbours density walls forces extremes time-step integrate laminar-viscosity artificial-viscosity solid-collisions";
-const char* const Classic = "sort neighbours density forces extremes time-step integrate classic-viscosity";
+    "solids sort neighbours density walls forces extremes time-step integrate laminar-viscosity "
+    "artificial-viscosity solid-collisions";
+const char* const Classic =
+    "sort neighbours density forces extremes time-step integrate classic-viscosity";
 const Expected Scenes[] = {
     {"dam_break", Splash, 200},
     {"double_dam_break", Splash, 210},
@@ -22,14 +30,28 @@ const Expected Scenes[] = {
     {"wave_maker", WithMovingSolids, 290},
     {"mixer", WithMovingSolids, 270},
     {"bowl", WithMovingSolids, 270},
-    {"floating", "solids sort neighbours density walls forces solid-forces extremes time-step floating-solids integrate laminar-viscosity artificial-viscosity "
-                 "solid-collisions", 300},
-    {"artery", "solids sort neighbours density walls forces contact extremes time-step objects integrate laminar-viscosity artificial-viscosity "
-               "solid-collisions", 400},
-    {"oil_and_water", "sort neighbours density walls forces extremes time-step integrate viscosities-of-a-mixture", 260},
-    {"drops", "sort neighbours equation-of-state forces normals surface-tension extremes time-step kick transport drift laminar-viscosity "
-              "artificial-viscosity", 500},
-    {"poiseuille", "sort neighbours equation-of-state walls forces extremes time-step kick transport drift laminar-viscosity", 220},
+    {"floating",
+     "solids sort neighbours density walls forces solid-forces extremes time-step floating-solids "
+     "integrate laminar-viscosity artificial-viscosity "
+     "solid-collisions",
+     300},
+    {"artery",
+     "solids sort neighbours density walls forces contact extremes time-step objects integrate "
+     "laminar-viscosity artificial-viscosity "
+     "solid-collisions",
+     400},
+    {"oil_and_water",
+     "sort neighbours density walls forces extremes time-step integrate viscosities-of-a-mixture",
+     260},
+    {"drops",
+     "sort neighbours equation-of-state forces normals surface-tension extremes time-step kick "
+     "transport drift laminar-viscosity "
+     "artificial-viscosity",
+     500},
+    {"poiseuille",
+     "sort neighbours equation-of-state walls forces extremes time-step kick transport drift "
+     "laminar-viscosity",
+     220},
     {"1", Classic, 120},
     {"2", Classic, 150},
     {"3", Classic, 170},
@@ -50,11 +72,13 @@ std::string passesOf(const Simulation& simulation) {
 TEST(Plan, OfEachShippedScene) {
     for (const Expected& e : Scenes) {
         SCOPED_TRACE(e.scene);
-        Scene scene = loadScene(std::string(SPINDRIFT_SOURCE_DIR) + "/configs/" + e.scene + ".json");
+        Scene scene =
+            loadScene(std::string(SPINDRIFT_SOURCE_DIR) + "/configs/" + e.scene + ".json");
         scene.compute.backend = Backend::Cpu;
         const auto simulation = makeSimulation(scene);
         EXPECT_EQ(passesOf(*simulation), e.passes);
-        const double bytes = double(simulation->bytes()) / double(simulation->fluidCount() + simulation->wallCount());
+        const double bytes = double(simulation->bytes()) /
+                             double(simulation->fluidCount() + simulation->wallCount());
         EXPECT_LE(bytes, e.bytes);
         EXPECT_GE(bytes, 0.5 * e.bytes) << "the bound says nothing any more";
     }

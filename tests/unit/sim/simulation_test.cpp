@@ -24,7 +24,8 @@ Scene calm() {
 Placement apart() {
     Placement p;
     for (int k = 0; k < 1000; ++k) {
-        p.positions.push_back({0.05f + 0.1f * float(k % 10), 0.05f + 0.1f * float(k / 10 % 10), 0.05f + 0.1f * float(k / 100)});
+        p.positions.push_back({0.05f + 0.1f * float(k % 10), 0.05f + 0.1f * float(k / 10 % 10),
+                               0.05f + 0.1f * float(k / 100)});
         p.velocities.push_back({float(k) / 1000, 0, 0});
     }
     p.velocities[500] = {100, 0, 0};
@@ -60,8 +61,9 @@ TEST(Particle, OneIsWhatAllSay) {
     for (Precision precision : {Precision::Float, Precision::Double}) {
         Scene scene = calm();
         scene.simulation.gravity = {0, -9.81f, 0};
-        const auto simulation = precision == Precision::Float ? makeSimdSimulation(scene, apart(), 2)
-                                                              : makeDoubleSimulation(scene, apart(), 2);
+        const auto simulation = precision == Precision::Float
+                                    ? makeSimdSimulation(scene, apart(), 2)
+                                    : makeDoubleSimulation(scene, apart(), 2);
         simulation->step(5);
         const std::vector<Particle> all = simulation->particles();
         for (int id : {0, 7, 500, 999}) {
@@ -83,14 +85,16 @@ TEST(PairsSeen, AreAllThatCountAndNotManyMore) {
     const std::vector<Particle> particles = simulation->particles();
     double within = 0;
     for (size_t i = 0; i < particles.size(); ++i)
-        for (size_t j = 0; j < i; ++j) within += length(particles[i].position - particles[j].position) < supportRadius(scene);
+        for (size_t j = 0; j < i; ++j)
+            within += length(particles[i].position - particles[j].position) < supportRadius(scene);
     const PairsSeen seen = simulation->pairsSeen();
     EXPECT_GE(seen.later, within);
     EXPECT_GE(seen.first, seen.later);
     EXPECT_LT(seen.first, 6 * within);
 }
 
-// v = g integral of s^2 (3 - 2 s), s = t / T: g T (s^3 - s^4 / 2), from T on g (t - T / 2). It goes on from a state as if nothing had been.
+// v = g integral of s^2 (3 - 2 s), s = t / T: g T (s^3 - s^4 / 2), from T on g (t - T / 2). It goes
+// on from a state as if nothing had been.
 TEST(Gravity, GrowsSmoothlyOverItsRamp) {
     for (Precision precision : {Precision::Float, Precision::Double}) {
         Scene scene = calm();
@@ -102,14 +106,16 @@ TEST(Gravity, GrowsSmoothlyOverItsRamp) {
         Placement one;
         one.positions = {{0.5f, 0.5f, 0.5f}}, one.velocities = {{0, 0, 0}};
         auto make = [&](const RunState& from) {
-            return precision == Precision::Float ? makeSimdSimulation(scene, from, 1) : makeDoubleSimulation(scene, from, 1);
+            return precision == Precision::Float ? makeSimdSimulation(scene, from, 1)
+                                                 : makeDoubleSimulation(scene, from, 1);
         };
         auto simulation = make(RunState(one));
         for (int steps = 100; steps <= 600; steps += 100) {
             simulation->step(100);
             const double T = 0.4, t = 0.001 * steps, s = t / T;
             const double exact = 9.81 * (s < 1 ? T * (s * s * s - s * s * s * s / 2) : t - T / 2);
-            EXPECT_NEAR(simulation->particles()[0].velocity.y, exact, 0.001 * 9.81 + 1e-4 * exact) << t;
+            EXPECT_NEAR(simulation->particles()[0].velocity.y, exact, 0.001 * 9.81 + 1e-4 * exact)
+                << t;
             if (steps == 200) simulation = make(simulation->state());
         }
     }
@@ -139,7 +145,8 @@ TEST(Box, WhoIsNowhereStaysNowhere) {
     Placement p = apart();
     p.velocities[3] = {NAN, 0, 0};
     for (Precision precision : {Precision::Float, Precision::Double}) {
-        const auto simulation = precision == Precision::Float ? makeSimdSimulation(calm(), p, 2) : makeDoubleSimulation(calm(), p, 2);
+        const auto simulation = precision == Precision::Float ? makeSimdSimulation(calm(), p, 2)
+                                                              : makeDoubleSimulation(calm(), p, 2);
         simulation->step();
         EXPECT_TRUE(std::isnan(simulation->particle(3).position.x));
         EXPECT_FALSE(std::isnan(simulation->particle(999).position.x));
@@ -160,7 +167,8 @@ TEST(Stir, DragsTheFluidInItsSphereOnly) {
     simulation->stir({});
     const double before = simulation->particle(0).velocity.y;
     simulation->step(1);
-    EXPECT_NEAR(simulation->particle(0).velocity.y, before, 1e-3);   // friction with its neighbours goes on
+    EXPECT_NEAR(simulation->particle(0).velocity.y, before,
+                1e-3);  // friction with its neighbours goes on
 }
 
 }  // namespace

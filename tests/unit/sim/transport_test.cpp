@@ -27,7 +27,8 @@ Scene jittered(int dimensions, const char* precision) {
     return s;
 }
 
-// rho = rho0 (1 + b.x): a = -c^2 b rho0 / rho. u = A x: no viscous force, d rho/dt = -rho trace A + the shift's part.
+// rho = rho0 (1 + b.x): a = -c^2 b rho0 / rho. u = A x: no viscous force, d rho/dt = -rho trace A +
+// the shift's part.
 void expectLinearFieldsExact(int dimensions, const char* precision, double tolerance) {
     const Scene s = jittered(dimensions, precision);
     const Vec3d b{0.5, -0.15, dimensions == 3 ? 0.2 : 0.0};
@@ -36,7 +37,8 @@ void expectLinearFieldsExact(int dimensions, const char* precision, double toler
     for (size_t i = 0; i < state.particles.positions.size(); ++i) {
         const Vec3d x = toDouble(state.particles.positions[i]);
         state.densities.push_back(float(rho0 * (1 + dot(b, x))));
-        state.particles.velocities[i] = toFloat(Vec3d{0.2 * x.x + 0.1 * x.y, -0.3 * x.y, dimensions == 3 ? 0.4 * x.x : 0.0});
+        state.particles.velocities[i] =
+            toFloat(Vec3d{0.2 * x.x + 0.1 * x.y, -0.3 * x.y, dimensions == 3 ? 0.4 * x.x : 0.0});
     }
     const auto simulation = makeSimulation(s, state);
     const double R = supportRadius(s);
@@ -44,7 +46,8 @@ void expectLinearFieldsExact(int dimensions, const char* precision, double toler
     double worst = 0;
     for (const Particle& p : simulation->particles()) {
         bool far = true;
-        for (int k = 0; k < dimensions; ++k) far = far && p.position[k] > R && p.position[k] < s.domain.max[k] - R;
+        for (int k = 0; k < dimensions; ++k)
+            far = far && p.position[k] > R && p.position[k] < s.domain.max[k] - R;
         if (!far) continue;
         ++inside;
         const Vec3d exact = (-c2 * rho0 / p.density) * b;
@@ -55,7 +58,8 @@ void expectLinearFieldsExact(int dimensions, const char* precision, double toler
 }
 
 TEST(Transport, PressureGradientOfALinearFieldIsExact) {
-    // Densities go in as floats, on every device: 6e-8 of rho0 over a spacing, where the field changes by 2e-2. (Uncorrected: 0.1.)
+    // Densities go in as floats, on every device: 6e-8 of rho0 over a spacing, where the field
+    // changes by 2e-2. (Uncorrected: 0.1.)
     expectLinearFieldsExact(2, "double", 1e-4);
     expectLinearFieldsExact(3, "double", 1e-4);
     expectLinearFieldsExact(2, "float", 1e-4);
@@ -66,7 +70,7 @@ TEST(Transport, PressureGradientOfALinearFieldIsExact) {
 void expectFieldsAreCarried(Scene s) {
     s.time.step = 1e-4f;
     RunState state(placeParticles(s));
-    auto velocity = [](Vec3d x) { return Vec3d{2 * x.x + 1 * x.y, -2 * x.y, 0}; };   // div u = 0
+    auto velocity = [](Vec3d x) { return Vec3d{2 * x.x + 1 * x.y, -2 * x.y, 0}; };  // div u = 0
     for (size_t i = 0; i < state.particles.positions.size(); ++i) {
         state.densities.push_back(s.fluid.restDensity);
         state.particles.velocities[i] = toFloat(velocity(toDouble(state.particles.positions[i])));
@@ -78,9 +82,11 @@ void expectFieldsAreCarried(Scene s) {
     for (const Particle& p : simulation->particles()) {
         const Vec3d x = before[size_t(p.id)].position;
         if (std::min({x.x, x.y, 1 - x.x, 1 - x.y}) < 2 * supportRadius(s)) continue;
-        // Along its own path a particle's velocity would not change: no pressure, no viscous force. What changes it is the shift alone.
+        // Along its own path a particle's velocity would not change: no pressure, no viscous force.
+        // What changes it is the shift alone.
         const Vec3d shift = p.position - x - double(s.time.step) * before[size_t(p.id)].velocity;
-        const Vec3d expected = before[size_t(p.id)].velocity + Vec3d{2 * shift.x + shift.y, -2 * shift.y, 0};
+        const Vec3d expected =
+            before[size_t(p.id)].velocity + Vec3d{2 * shift.x + shift.y, -2 * shift.y, 0};
         farthest = std::max(farthest, length(shift));
         worst = std::max(worst, length(p.velocity - expected));
         density = std::max(density, std::abs(p.density / s.fluid.restDensity - 1));
@@ -108,11 +114,12 @@ TEST(Transport, ALinearDensityDoesNotDiffuse) {
     const double rho0 = s.fluid.restDensity;
     auto density = [&](Vec3d x) { return rho0 * (1 + 0.05 * x.x - 0.02 * x.y); };
     RunState state(placeParticles(s));
-    for (const Vec3& x : state.particles.positions) state.densities.push_back(float(density(toDouble(x))));
+    for (const Vec3& x : state.particles.positions)
+        state.densities.push_back(float(density(toDouble(x))));
     const auto simulation = makeSimulation(s, state);
     const std::vector<Particle> before = simulation->particles();
     simulation->step();
-    double least = 1e300, most = 0;   // of all particles the volume is kept: by one factor for all
+    double least = 1e300, most = 0;  // of all particles the volume is kept: by one factor for all
     for (const Particle& p : simulation->particles()) {
         const Vec3d x = before[size_t(p.id)].position;
         if (std::min({x.x, x.y, 1 - x.x, 1 - x.y}) < 2 * supportRadius(s)) continue;

@@ -4,13 +4,14 @@
 namespace cub {
 
 struct DeviceScan {
-    template <class In, class Out>
-    static cudaError_t ExclusiveSum(void* space, size_t& bytes, const In* in, Out* out, int n, cudaStream_t stream) {
+    template <class In, class Out> static cudaError_t ExclusiveSum(void* space, size_t& bytes,
+                                                                   const In* in, Out* out, int n,
+                                                                   cudaStream_t stream) {
         if (!space) return bytes = 1, cudaSuccess;
         return emulation::enqueue(stream, [=] {
             Out sum = 0;
             for (int i = 0; i < n; ++i) {
-                const In item = in[i];   // `out` may be `in`
+                const In item = in[i];  // `out` may be `in`
                 out[i] = sum;
                 sum += item;
             }
