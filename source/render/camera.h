@@ -1,8 +1,6 @@
 #pragma once
 // A camera that orbits a target. Lengths in m, angles in degrees.
-#include "core/vec.h"
-
-#include <glm/mat4x4.hpp>
+#include "render/matrix.h"
 
 namespace spindrift {
 
@@ -27,9 +25,9 @@ struct OrbitCamera {
     Vec3 right() const;
     Vec3 up() const;
 
-    glm::mat4 view() const;
+    Mat4 view() const;
     // Near and far follow the distance, so that a close look doesn't cut the picture.
-    glm::mat4 projection(float aspect) const;
+    Mat4 projection(float aspect) const;
     float nearPlane() const { return 0.01f * distance; }
     float farPlane() const { return 100 * distance; }
 
