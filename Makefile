@@ -4,7 +4,7 @@ BUILD ?= build
 ARGS ?=
 CMAKE_ARGS ?=
 
-.PHONY: run test build configure bench validate stress fuzz documents program gpu-check gpu-bundle meson sanitize install clean
+.PHONY: run test build configure bench validate stress fuzz documents program gpu-check gpu-bundle meson sanitize check-format format release install clean
 
 # Only what it needs: the tests are built by `make build`.
 run: program
@@ -44,6 +44,19 @@ documents: program
 	docs/fill_in.sh docs/STABILITY.md $(BUILD)/stress/stability.md
 	cp $(BUILD)/error/*.svg $(BUILD)/stress/*.svg docs/images/
 
+# One format, by .clang-format: whether it is kept, and what makes it so.
+check-format: install
+	@git ls-files '*.cpp' '*.h' '*.cu' | xargs clang-format --dry-run --Werror
+
+format: install
+	@git ls-files '*.cpp' '*.h' '*.cu' | xargs clang-format -i
+
+# For machines other than this one: kernels for each GPU architecture that nvcc knows, no tests.
+release: install
+	cmake -S . -B build-release -G Ninja --log-level=WARNING -DSPINDRIFT_TESTS=OFF \
+		"-DSPINDRIFT_CUDA_ARCHITECTURES=75;80;86;89;90;100;120" $(CMAKE_ARGS)
+	@cmake --build build-release --target spindrift
+
 program: configure
 	@cmake --build $(BUILD) --target spindrift
 
@@ -66,16 +79,16 @@ configure: install
 # of the tests those that take seconds: it is the build that is tested.
 meson: install
 	@test -f build-meson/build.ninja || meson setup build-meson -Doptimization=1 -Dsimd=sse
-	@ninja -C build-meson
-	meson test -C build-meson --print-errorlogs render example
+	@ninja -C build-meson spindrift flap_example render_tests
+	meson test -C build-meson --no-rebuild --print-errorlogs render example
 
 # AddressSanitizer and UndefinedBehaviorSanitizer, over all but the window and the flows that take minutes with the checks
-# in. Each instruction set takes minutes to compile: the widest and the narrowest are enough.
+# in. Each instruction set takes minutes to compile: one that every machine has, and double precision, are enough.
 LONG_FLOWS = HealthGuard.*:Rest.*:Plan.OfEachShippedScene:NeighbourLists.KeptListsMissNobody:Integrators.FlowsHaveTheirOrder:$\
 	Conservation.*:LocalSteps.LetAPoolRest:*SumsAgreeAfterThreeHundredSteps*
 sanitize: install
 	@test -f build-sanitize/build.ninja || cmake -S . -B build-sanitize -G Ninja --log-level=WARNING \
-		-DSPINDRIFT_CUDA=OFF -DSPINDRIFT_SANITIZE=address,undefined "-DSPINDRIFT_SIMD=avx512;sse"
+		-DSPINDRIFT_CUDA=OFF -DSPINDRIFT_SANITIZE=address,undefined -DSPINDRIFT_SIMD=avx2
 	@cmake --build build-sanitize --target unit_tests render_tests emulated_cuda_tests
 	LSAN_OPTIONS=suppressions=$(CURDIR)/tests/lsan.supp GTEST_FILTER="-$(LONG_FLOWS)" \
 		ctest --test-dir build-sanitize --output-on-failure -j 2 -R "^(unit|render|emulated_cuda)$$"
@@ -84,4 +97,4 @@ install:
 	@third_party/install.sh
 
 clean:
-	rm -rf build build-meson build-sanitize build-fuzz
+	rm -rf build build-meson build-sanitize build-release build-fuzz

@@ -23,7 +23,8 @@ constexpr const char* TankWithFlap = R"({
     "name": "tank with a flap",
     "simulation": { "spacing": 0.025 },
     "domain": { "min": [0, 0, 0], "max": [1, 0.5, 0.2] },
-    "objects": [{ "shape": "sheet", "min": [0.3, 0.025, 0.0125], "max": [0.3, 0.425, 0.1875], "thickness": 0.01 }],
+    "objects": [{ "shape": "sheet", "min": [0.3, 0.025, 0.0125], "max": [0.3, 0.425, 0.1875],
+                   "thickness": 0.01 }],
     "fluid": { "bodies": [{ "shape": "block", "min": [0, 0, 0], "max": [1, 0.3, 0.2] }] }
 })";
 

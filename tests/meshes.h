@@ -145,9 +145,11 @@ private:
             out << "\"" << name << "\":[" << v.x << "," << v.y << "," << v.z << "]";
         };
         const size_t places = 12 * vertices.size(), indices = 3 * faces.size();
-        out << R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,)";
+        out << R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],)"
+               R"("nodes":[{"mesh":0,)";
         vector("translation", translation), out << ",", vector("scale", {scale, scale, scale});
-        out << R"(}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],"accessors":[)"
+        out << R"(}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],)"
+               R"("accessors":[)"
             << R"({"bufferView":0,"componentType":5126,"type":"VEC3","count":)" << vertices.size()
             << ",";
         vector("min", low), out << ",", vector("max", high);

@@ -50,7 +50,7 @@ inline std::vector<Method> allMethods() {
     return all;
 }
 
-// What README promises to go together ("Which go together").
+// What docs/SCENES.md promises to go together ("Which go together").
 inline bool goesTogether(const Method& m, int dimensions) {
     Scene s;
     setMethod(s, m);

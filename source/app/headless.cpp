@@ -177,11 +177,12 @@ public:
 private:
     bool done() const {
         const double time = asWritten(scene_.output.time);
-        constexpr double NoStep =
-            1e-3;  // share of the last one: too short to be worth one, after a start near the end
         return (endStep_ > 0 && steps_ >= endStep_) ||
-               (time > 0 && (isReached(time, now_.time) || time - now_.time < NoStep * now_.dt));
+               (time > 0 && isReached(time, now_.time, shortestStep()));
     }
+    // s; times that are nearer than this to each other share a step: rows whose interval does not
+    // quite divide the time of the run, an end right behind where a run goes on.
+    double shortestStep() const { return 1e-2 * now_.longestStep; }
 
     // One step; then what is due: a look at the run's health, what is to be recorded, the progress
     // bar.
@@ -245,7 +246,7 @@ private:
     }
 
     void record() {
-        for (Recorder& recorder : recorders_) recorder.writeIfDue(now_.time);
+        for (Recorder& recorder : recorders_) recorder.writeIfDue(now_.time, shortestStep());
     }
     bool hasFluidMeshes() const {
         const std::vector<Body>& bodies = scene_.fluid.bodies;

@@ -6,8 +6,10 @@
 
 namespace spindrift {
 
-// Two times that should be the same, but are sums of different steps, are.
-inline bool isReached(double time, double now) { return now >= time * (1 - 1e-9); }
+// Two times that should be the same, but are sums of different steps, are; `tolerance` in s.
+inline bool isReached(double time, double now, double tolerance = 0) {
+    return now >= time * (1 - 1e-9) - tolerance;
+}
 
 // Among the multiples of `every` the first one that is still ahead.
 inline double multipleAfter(double time, double every) {
@@ -20,10 +22,11 @@ struct Recorder {
     std::function<void()> write;
     std::function<void(double time)> rewind;  // forgets what was written after this time
 
-    void writeIfDue(double now) {
-        if (!isReached(next, now)) return;
+    // What is due within so short a time that no step is worth it is written now.
+    void writeIfDue(double now, double shortestStep) {
+        if (!isReached(next, now, std::min(shortestStep, every / 2))) return;
         write();
-        next = multipleAfter(now, every);
+        next = multipleAfter(std::max(now, next), every);
     }
     void goBack(double now) {
         rewind(now);

@@ -5,8 +5,8 @@
 
 namespace spindrift {
 
-// What the process returns to the shell; each kind of mistake has its own number (README, "Exit
-// codes").
+// What the process returns to the shell; each kind of mistake has its own number (docs/RUNNING.md,
+// "Exit codes").
 enum class Exit {
     Ok = 0,
     Different = 1,   // `compare` found the pictures different, `validate` an error above its target

@@ -69,11 +69,11 @@ Trouble troubleOf(const Scene& scene, const Measurement& m, double squeezed) {
         return {fmt::format("a particle squeezed to {:.3g} times the rest density",
                             1 + m.maxDensityError),
                 densityOf};
-    if (scene.time.mode == TimeMode::Cfl && m.steps > 0 && m.dt < leastStep(scene))
+    if (scene.time.mode == TimeMode::Cfl && m.steps > 0 && m.longestStep < leastStep(scene))
         return {
             fmt::format(
                 "accelerations that leave a step of {:.2g} s, a thousandth of what sound allows",
-                m.dt),
+                m.longestStep),
             accelerationOf};
     return {};
 }

@@ -56,7 +56,8 @@ std::vector<Candidate> candidates() {
     const std::string dam =
         R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.5,0.6,1],"velocity":[1,0,0]}])";
     const std::string drop =
-        R"(fluid.bodies=[{"shape":"sphere","center":[0.5,0.5,0.5],"radius":0.25,"velocity":[0,-5,0]},)"
+        R"(fluid.bodies=[{"shape":"sphere","center":[0.5,0.5,0.5],"radius":0.25,"velocity":[0,)"
+        R"(-5,0]},)"
         R"({"shape":"block","min":[0,0,0],"max":[1,0.2,1]}])";
     const std::string pool =
         R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[1,0.4,1],"velocity":[0,-0.1,0]}])";
@@ -70,7 +71,8 @@ std::vector<Candidate> candidates() {
          "transport_velocity",
          {"simulation.dimensions=2", "simulation.gravity=0,0,0", "simulation.spacing=0.03",
           "fluid.rest_density=1", "domain.max=0.99,0.99,1", "fluid.equation_of_state=linear",
-          R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.99,0.99,1],"velocity":[1,0,0],"field":"taylor_green"}])"}});
+          R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.99,0.99,1],"velocity":[1,0,)"
+          R"(0],"field":"taylor_green"}])"}});
     return out;
 }
 

@@ -183,7 +183,8 @@ void addViolent(const char* f, TimeMode mode, std::vector<StressCase>& out) {
     add("impact at 10 m/s", 600, {ball(10)});
     add("impact at 100 m/s", 600, {ball(100)});
     add("thin jet", 600,
-        {R"(fluid.bodies=[{"shape":"cylinder","center":[0.5,0.6,0.5],"radius":0.08,"height":0.7,"velocity":[0,-5,0]}])"});
+        {R"(fluid.bodies=[{"shape":"cylinder","center":[0.5,0.6,0.5],"radius":0.08,)"
+         R"("height":0.7,"velocity":[0,-5,0]}])"});
     add("sheet one particle thick", 400,
         {R"(fluid.bodies=[{"shape":"block","min":[0.1,0.5,0.1],"max":[0.9,0.55,0.9]}])"});
     add("one particle", 400,
@@ -203,7 +204,8 @@ void addViolent(const char* f, TimeMode mode, std::vector<StressCase>& out) {
     onWalls.energyIsConserved =
         false;  // they start where walls push most, in corners from three sides
     add("overlapping bodies", 400,
-        {R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.6,0.5,0.6]},{"shape":"sphere","center":[0.5,0.5,0.5],"radius":0.3}])"});
+        {R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.6,0.5,0.6]},)"
+         R"({"shape":"sphere","center":[0.5,0.5,0.5],"radius":0.3}])"});
     add("reflecting walls", 600, {ball(5), "walls.kind=reflect"});
     StressCase& tilted = add("gravity tilted and turned", 1600, {pool});
     tilted.disturb = tilt, tilted.energyIsConserved = false;
@@ -251,7 +253,8 @@ std::vector<StressCase> tortures(bool full) {
     };
     addFilled(
         "vortices between walls, Re 1000",
-        {R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.99,0.99,1],"velocity":[1,0,0],"field":"taylor_green"}])"});
+        {R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.99,0.99,1],"velocity":[1,0,)"
+         R"(0],"field":"taylor_green"}])"});
     addFilled("cavity, Re 1e5",
               {"walls.moving_face=y_max", "walls.velocity=1,0,0", "fluid.viscosity=1e-5"})
         .energyIsConserved = false;

@@ -1,12 +1,15 @@
 #include "render/camera.h"
 
+#include <glm/gtc/matrix_transform.hpp>
+
 #include <algorithm>
 
 namespace spindrift {
 
 namespace {
 constexpr float degree = 3.14159265f / 180;
-}
+glm::vec3 toGlm(Vec3 v) { return {v.x, v.y, v.z}; }
+}  // namespace
 
 Vec3 OrbitCamera::turned(Vec3 v) const {
     const Vec3 u = upward;
@@ -30,27 +33,12 @@ Vec3 OrbitCamera::right() const {
 Vec3 OrbitCamera::up() const { return cross(right(), forward()); }
 Vec3 OrbitCamera::eye() const { return target - distance * forward(); }
 
-Mat4 OrbitCamera::view() const {
-    const Vec3 axes[3] = {right(), up(), -1.0f * forward()};
-    Mat4 v;
-    for (int row = 0; row < 3; ++row) {
-        for (int k = 0; k < 3; ++k) v.at(row, k) = axes[row][k];
-        v.at(row, 3) = -dot(axes[row], eye());
-    }
-    return v;
+glm::mat4 OrbitCamera::view() const {
+    return glm::lookAt(toGlm(eye()), toGlm(target), toGlm(up()));
 }
 
-Mat4 OrbitCamera::projection(float aspect) const {
-    const float n = nearPlane(), f = farPlane();
-    const float focal = 1 / std::tan(0.5f * fieldOfView * degree);
-    Mat4 p;
-    p.at(0, 0) = focal / aspect;
-    p.at(1, 1) = focal;
-    p.at(2, 2) = (f + n) / (n - f);
-    p.at(2, 3) = 2 * f * n / (n - f);
-    p.at(3, 2) = -1;
-    p.at(3, 3) = 0;
-    return p;
+glm::mat4 OrbitCamera::projection(float aspect) const {
+    return glm::perspective(fieldOfView * degree, aspect, nearPlane(), farPlane());
 }
 
 Ray OrbitCamera::ray(float x, float y, float width, float height) const {

@@ -1,6 +1,8 @@
 #pragma once
 // A camera that orbits a target. Lengths in m, angles in degrees.
-#include "render/matrix.h"
+#include "core/vec.h"
+
+#include <glm/mat4x4.hpp>
 
 namespace spindrift {
 
@@ -25,9 +27,9 @@ struct OrbitCamera {
     Vec3 right() const;
     Vec3 up() const;
 
-    Mat4 view() const;
+    glm::mat4 view() const;
     // Near and far follow the distance, so that a close look doesn't cut the picture.
-    Mat4 projection(float aspect) const;
+    glm::mat4 projection(float aspect) const;
     float nearPlane() const { return 0.01f * distance; }
     float farPlane() const { return 100 * distance; }
 

@@ -15,7 +15,7 @@ using Four = std::array<float, 4>;
 
 // std140 twin of the block in shaders/frame.glsl.
 struct FrameBlock {
-    Mat4 view, projection, viewBefore;  // viewBefore: of the picture before
+    glm::mat4 view, projection, viewBefore;  // viewBefore: of the picture before
     // Of the picture; right and up reach its edges at distance 1. Like the domain's size they are
     // given where y is up and the ground's corner is 0, whatever is up in the world.
     Four eye, right, up, forward;

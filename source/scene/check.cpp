@@ -1,6 +1,5 @@
 #include "scene/check.h"
 
-#include "scene/body_lattice.h"
 #include "core/error.h"
 #include "scene/check_methods.h"
 #include "scene/check_things.h"

@@ -13,6 +13,7 @@ template <class Device> Measurement SimulationOn<Device>::measure() {
     Measurement m;
     m.dimensions = scene_.simulation.dimensions;
     m.time = state.time, m.dt = hasLocalSteps() ? state.longest : state.dt, m.steps = state.steps;
+    m.longestStep = std::max(state.longest, m.dt);
     m.evaluations = hasLocalSteps() ? state.evaluations : count * double(state.steps);
     m.kineticEnergy = mass * t.speed2 / 2;
     m.potentialEnergy =

@@ -498,9 +498,10 @@ struct ChooseTimeStep {
         if (dt <= 0) {
             const real pull = squareRoot(real(extremes->acceleration2));
             const real fastest = min(acousticStep(c, max(speed, solids)), c.maxStep);
-            dt = untilStop(*v.state, min(fastest, real(0.25) * squareRoot(c.support / 2 /
-                                                                          max(pull, real(1e-12)))));
+            dt = min(fastest, real(0.25) * squareRoot(c.support / 2 / max(pull, real(1e-12))));
         }
+        v.state->longest = dt;
+        if (c.fixedStep <= 0) dt = untilStop(*v.state, dt);
         v.state->dt = dt;
         v.state->speed = speed;
         v.state->volume = extremes->count > 0 ? extremes->volume / extremes->count : 1;

@@ -46,8 +46,9 @@ struct SolidPose {
 // depth; lengths in m; sums in double precision.
 struct Measurement {
     int dimensions = 3;
-    double time = 0;  // s
-    double dt = 0;    // s, the last step
+    double time = 0;         // s
+    double dt = 0;           // s, the last step
+    double longestStep = 0;  // s, what that could have been if the run had nowhere to stop
     int64_t steps = 0;
     double evaluations = 0;                // of a particle's forces, all together
     double kineticEnergy = 0;              // sum m v^2 / 2

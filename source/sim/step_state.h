@@ -11,8 +11,9 @@ struct StepState {
     double speed = 0;     // m/s, the largest before the last step
     double volume = 1;    // of all particles then, share of their volume at rest density
     double stop = 1e300;  // s: a step ends here
-    // With local steps `dt` is the time to the next moment at which a particle is due.
-    double longest = 0;      // s, the step of calm fluid and of the whole
+    double longest = 0;   // s, what the last step could have been without a stop
+    // With local steps `dt` is the time to the next moment at which a particle is due, `longest`
+    // the step of calm fluid and of the whole.
     int moment = 0;          // where in it the run stands, in 64ths; outside of step() 0
     int level = 0;           // particles are due whose steps are longest / 2^level and shorter
     bool allDue = false;     // at this moment, for certain

@@ -41,9 +41,9 @@ struct Particles {
     VectorField keptVelocity;  // m/s
     ScalarField keptDensity;   // kg/m³
     ScalarField massRatio;     // of a mixture: rest density / the scene's. Density and what follows
-                            // from it are those of the same particle of the scene's fluid, which
-                            // has its volume and pressure; forces are divided by the ratio
-    ScalarField viscosity;  // of a mixture, Pa s
+                               // from it are those of the same particle of the scene's fluid, which
+                               // has its volume and pressure; forces are divided by the ratio
+    ScalarField viscosity;     // of a mixture, Pa s
     ScalarField level;  // local steps only: how short a particle's own step is, longest / 2^level,
                         // or how it rests
     uint8_t* due;       // local steps only: per cluster, whether it is evaluated now

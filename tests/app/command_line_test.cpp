@@ -164,7 +164,8 @@ TEST_F(CommandLine, ProbesInsideASolidAreNamed) {
 
 TEST_F(CommandLine, ProbesAreColumnsInEveryFormat) {
     const std::string probes =
-        R"( --set 'output.probes=[{"name":"wall","position":[0,0.1,0.3]},{"kind":"height","name":"gauge","position":[0.1,0,0.3]}]')";
+        R"( --set 'output.probes=[{"name":"wall","position":[0,0.1,0.3]},{"kind":"height",)"
+        R"("name":"gauge","position":[0.1,0,0.3]}]')";
     const Outcome outcome = call(
         "dam_break --headless --backend cpu --quiet --set simulation.spacing=0.04 --steps 30 "
         "--csv run.csv --json run.json --hdf5 run.h5 --set output.sample_every=0.001 --frames "

@@ -1,29 +1,19 @@
 // One answer for any number of threads, and for any two runs: bit by bit.
-#include "scene/json.h"
-#include "sim/simulation.h"
+#include "determinism/hash.h"
 
 #include <gtest/gtest.h>
-
-#include <bit>
 
 namespace spindrift {
 namespace {
 
 uint64_t hashAfter(const std::string& file, int threads, int steps, int change = 0,
                    Integrator integrator = {}, TimeMode mode = TimeMode::Cfl) {
-    Scene scene = loadScene(std::string(SPINDRIFT_SOURCE_DIR) + "/configs/" + file);
+    Scene scene = loadConfig(file, {});
     scene.compute.threads = threads;
     scene.time.integrator = integrator;
     if (mode == TimeMode::Local) scene.time.mode = mode;
     scene.simulation.gravity.x += 1e-3f * float(change);
-    auto simulation = makeSimulation(scene);
-    simulation->step(steps);
-    uint64_t hash = 1469598103934665603ull;  // FNV-1a
-    for (const Particle& p : simulation->particles())
-        for (const Vec3d& v : {p.position, p.velocity, Vec3d{p.density, p.pressure, 0}})
-            for (int k = 0; k < 3; ++k)
-                hash = (hash ^ std::bit_cast<uint64_t>(v[k])) * 1099511628211ull;
-    return hash;
+    return spindrift::hashAfter(scene, steps);
 }
 
 class Threads : public testing::TestWithParam<const char*> {};

@@ -115,12 +115,11 @@ TEST(Collisions, ThinPlatesStopFluidWithPressure) {
 
 // Shot at from above: nobody is below their middle in their shadow, or in them.
 TEST(Collisions, BodiesStopFluidWhereItCame) {
-    for (
-        const std::string& body :
-        {std::string(R"({"shape":"sphere","center":[0.5,0.3,0.5],"radius":0.15})"),
-         std::string(
-             R"({"shape":"cylinder","center":[0.5,0.3,0.5],"radius":0.15,"height":0.4,"axis":"y"})"),
-         mesh(sphereSurface({0.5, 0.3, 0.5}, 0.15, 3), "sphere")}) {
+    for (const std::string& body :
+         {std::string(R"({"shape":"sphere","center":[0.5,0.3,0.5],"radius":0.15})"),
+          std::string(R"({"shape":"cylinder","center":[0.5,0.3,0.5],"radius":0.15,"height":0.4,)"
+                      R"("axis":"y"})"),
+          mesh(sphereSurface({0.5, 0.3, 0.5}, 0.15, 3), "sphere")}) {
         Scene scene =
             dustOf({"walls.restitution=0", "solids=[" + body + "]",
                     R"(fluid.bodies=[{"shape":"block","min":[0.4,0.6,0.4],"max":[0.6,0.9,0.6]}])"});
@@ -242,7 +241,8 @@ TEST(Collisions, TheBoxAndAPlateInOneStep) {
 TEST(Collisions, NobodyLeavesARoomThatMoves) {
     const std::string room = mesh(
         roomSurface({0.3, 0.3, 0.3}, {0.7, 0.7, 0.7}, 0.03), "room",
-        R"(,"spin_axis":"y","keyframes":[[0,0,0,0,0],[0.02,0.1,0.1,0,60],[0.05,-0.1,0,0.1,-90],[0.1,0,-0.1,-0.1,200],[0.2,0,0,0,0]])");
+        R"(,"spin_axis":"y","keyframes":[[0,0,0,0,0],[0.02,0.1,0.1,0,60],[0.05,-0.1,0,0.1,-90],)"
+        R"([0.1,0,-0.1,-0.1,200],[0.2,0,0,0,0]])");
     Scene scene = dustOf(
         {"walls.restitution=0.3", "solids=[" + room + "]",
          R"(fluid.bodies=[{"shape":"block","min":[0.35,0.35,0.35],"max":[0.65,0.65,0.65]}])"});
@@ -306,7 +306,8 @@ TEST(Meshes, AreLiftedByTheWeightOfTheirWater) {
             {"simulation.formulation=delta_sph", "simulation.spacing=0.025",
              "domain.max=0.6,0.6,0.6", "fluid.viscosity=0", "fluid.artificial_viscosity=0.3",
              "fluid.speed_ratio=8", "time.cfl=0.5", "solids=[" + solid + "]",
-             R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.6,0.45,0.6],"pressure":"hydrostatic"}])"});
+             R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.6,0.45,0.6],)"
+             R"("pressure":"hydrostatic"}])"});
         auto simulation = makeSimulation(scene);
         simulation->step(600);
         double lift = 0;

@@ -28,11 +28,12 @@ SolidMeasurement solidAfter(Simulation& simulation, int steps) {
 // A cube of half density: its middle comes to rest where the water's level is then.
 TEST(Floating, CubeOfHalfDensityIsHalfSubmerged) {
     for (const char* formulation : {"wcsph", "delta_sph"}) {
-        const Scene scene = sceneOf(
-            {std::string("simulation.formulation=") + formulation, "domain.max=0.4,0.4,0.4",
-             "simulation.spacing=0.02", "time.mode=cfl", "fluid.dissipation=1",
-             R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.4,0.2,0.4]}])",
-             R"(solids=[{"shape":"block","min":[0.14,0.18,0.14],"max":[0.26,0.30,0.26],"density":500}])"});
+        const Scene scene =
+            sceneOf({std::string("simulation.formulation=") + formulation, "domain.max=0.4,0.4,0.4",
+                     "simulation.spacing=0.02", "time.mode=cfl", "fluid.dissipation=1",
+                     R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.4,0.2,0.4]}])",
+                     R"(solids=[{"shape":"block","min":[0.14,0.18,0.14],"max":[0.26,0.30,0.26],)"
+                     R"("density":500}])"});
         auto simulation = makeSimulation(scene);
         simulation->stopAt(2.0);
         while (simulation->clock().time < 2.0) simulation->step(50);
@@ -53,7 +54,8 @@ TEST(Floating, FluidAndSolidKeepTheirMomentum) {
              std::string("time.integrator=") + integrator, "simulation.gravity=0,0,0",
              "walls.kind=reflect", "time.mode=cfl", "domain.min=-1,-1,-1", "domain.max=6,5,5",
              "fluid.viscosity=1", "compute.precision=double",
-             R"(fluid.bodies=[{"shape":"block","min":[1.5,1.8,1.8],"max":[1.9,2.2,2.2],"velocity":[1,0,0]}])",
+             R"(fluid.bodies=[{"shape":"block","min":[1.5,1.8,1.8],"max":[1.9,2.2,2.2],)"
+             R"("velocity":[1,0,0]}])",
              R"(solids=[{"shape":"block","min":[2,1.9,1.7],"max":[2.3,2.4,2.2],"density":700}])"});
         auto simulation = makeSimulation(scene);
         const double mass = massOf(scene, scene.solids[0]).mass;
@@ -149,7 +151,8 @@ TEST(Floating, HeavySolidsOnTheFloorFeelTheirBuoyancy) {
 TEST(Floating, FallsAndTumblesFreely) {
     Scene scene = sceneOf(
         {"walls.kind=reflect",
-         R"(solids=[{"shape":"block","min":[0.4,0.7,0.4],"max":[0.6,0.9,0.7],"density":2000,"velocity":[0.5,0,0],"spin":360,"spin_axis":"y"}])"});
+         R"(solids=[{"shape":"block","min":[0.4,0.7,0.4],"max":[0.6,0.9,0.7],"density":2000,)"
+         R"("velocity":[0.5,0,0],"spin":360,"spin_axis":"y"}])"});
     auto simulation = makeSimulation(scene);
     const SolidMeasurement s = solidAfter(*simulation, 400);
     EXPECT_NEAR(s.position.y, 0.8 - 0.5 * 9.81 * 0.04, 0.001);
@@ -171,9 +174,10 @@ TEST(Floating, FallsAndTumblesFreely) {
 // A top that turns about no axis of its own: its axis goes round the angular momentum at L / I
 // (Euler), and its energy stays.
 TEST(Floating, TopPrecesses) {
-    Scene scene = sceneOf(
-        {"walls.kind=reflect", "simulation.gravity=0,0,0",
-         R"(solids=[{"shape":"cylinder","axis":"z","center":[0.5,0.5,0.5],"radius":0.15,"height":0.1,"density":1000}])"});
+    Scene scene =
+        sceneOf({"walls.kind=reflect", "simulation.gravity=0,0,0",
+                 R"(solids=[{"shape":"cylinder","axis":"z","center":[0.5,0.5,0.5],"radius":0.15,)"
+                 R"("height":0.1,"density":1000}])"});
     const Mass mass = massOf(scene, scene.solids[0]);
     auto simulation = makeSimulation(scene);
     RunState state = simulation->state();
@@ -198,9 +202,10 @@ TEST(Floating, TopPrecesses) {
 
 // A block slides to a halt after v^2 / (2 mu g), and stays upright and on the floor.
 TEST(Floating, BlockSlidesToAHalt) {
-    const Scene scene = sceneOf(
-        {"walls.kind=reflect", "domain.max=3,1,1",
-         R"(solids=[{"shape":"block","min":[0.4,0,0.4],"max":[0.8,0.2,0.7],"density":1000,"velocity":[2,0,0],"friction":0.4}])"});
+    const Scene scene =
+        sceneOf({"walls.kind=reflect", "domain.max=3,1,1",
+                 R"(solids=[{"shape":"block","min":[0.4,0,0.4],"max":[0.8,0.2,0.7],"density":1000,)"
+                 R"("velocity":[2,0,0],"friction":0.4}])"});
     auto simulation = makeSimulation(scene);
     const SolidMeasurement s = solidAfter(*simulation, 1600);  // it takes 0.51 s
     EXPECT_NEAR(s.position.x, 0.6 + 4 / (2 * 0.4 * 9.81), 0.01);
@@ -226,8 +231,10 @@ TEST(Floating, BlockStaysOnTheFloorWhenStepsBecomeLonger) {
 TEST(Floating, SolidsPushEachOther) {
     Scene scene = sceneOf(
         {"walls.kind=reflect", "simulation.gravity=0,0,0", "walls.restitution=1",
-         R"(solids=[{"shape":"block","min":[0.2,0.4,0.4],"max":[0.4,0.6,0.6],"density":1000,"velocity":[1,0,0],"friction":0},)"
-         R"({"shape":"block","min":[0.5,0.4,0.4],"max":[0.7,0.6,0.6],"density":1000,"friction":0}])"});
+         R"(solids=[{"shape":"block","min":[0.2,0.4,0.4],"max":[0.4,0.6,0.6],"density":1000,)"
+         R"("velocity":[1,0,0],"friction":0},)"
+         R"({"shape":"block","min":[0.5,0.4,0.4],"max":[0.7,0.6,0.6],"density":1000,)"
+         R"("friction":0}])"});
     auto simulation = makeSimulation(scene);
     simulation->step(500);
     const Measurement m = simulation->measure();

@@ -42,7 +42,8 @@ TEST(Objects, BarSagsAsABeamDoes) {
         Scene scene = sceneOf(
             {"simulation.gravity=0,-0.5,0", "simulation.dimensions=" + std::to_string(dimensions),
              "domain.max=1,1,0.4",
-             R"(objects=[{"shape":"block","min":[0.2,0.45,0.15],"max":[0.8,0.55,0.25],"spacing":0.0125,"youngs_modulus":2e6,"damping":0}])",
+             R"(objects=[{"shape":"block","min":[0.2,0.45,0.15],"max":[0.8,0.55,0.25],)"
+             R"("spacing":0.0125,"youngs_modulus":2e6,"damping":0}])",
              R"(grips=[{"min":[0.1,0.4,0],"max":[0.2001,0.6,0.4]}])", "simulation.spacing=0.0125",
              "fluid.bodies[0].max=0.05,0.05,0.05", "fluid.sound_speed=2"});
         auto simulation = makeSimulation(scene);
@@ -71,8 +72,10 @@ TEST(Objects, BarSagsAsABeamDoes) {
 TEST(Objects, BondsBreakAtTheirStrain) {
     Scene scene = sceneOf(
         {"simulation.gravity=0,0,0", "simulation.dimensions=2",
-         R"(objects=[{"shape":"sheet","min":[0.3,0.5,0.3],"max":[0.7,0.5,0.6],"breaking_strain":0.2,"youngs_modulus":1e6,"damping":0.5}])",
-         R"(grips=[{"min":[0.25,0.4,0],"max":[0.301,0.6,1]},{"min":[0.699,0.4,0],"max":[0.75,0.6,1],"velocity":[0.05,0,0]}])"});
+         R"(objects=[{"shape":"sheet","min":[0.3,0.5,0.3],"max":[0.7,0.5,0.6],)"
+         R"("breaking_strain":0.2,"youngs_modulus":1e6,"damping":0.5}])",
+         R"(grips=[{"min":[0.25,0.4,0],"max":[0.301,0.6,1]},{"min":[0.699,0.4,0],"max":[0.75,)"
+         R"(0.6,1],"velocity":[0.05,0,0]}])"});
     auto simulation = makeSimulation(scene);
     auto broken = [&] {
         const ObjectState state = simulation->state().objects;
@@ -92,8 +95,10 @@ TEST(Objects, FluidAndObjectsKeepTheirMomentum) {
         Scene scene = sceneOf(
             {std::string("simulation.formulation=") + formulation, "simulation.gravity=0,0,0",
              "domain.max=4,4,4", "compute.precision=double",
-             R"(fluid.bodies=[{"shape":"block","min":[1.5,1.8,1.8],"max":[1.9,2.2,2.2],"velocity":[1,0,0]}])",
-             R"(objects=[{"shape":"block","min":[2,1.9,1.7],"max":[2.3,2.4,2.2],"density":700,"youngs_modulus":2e4}])"});
+             R"(fluid.bodies=[{"shape":"block","min":[1.5,1.8,1.8],"max":[1.9,2.2,2.2],)"
+             R"("velocity":[1,0,0]}])",
+             R"(objects=[{"shape":"block","min":[2,1.9,1.7],"max":[2.3,2.4,2.2],"density":700,)"
+             R"("youngs_modulus":2e4}])"});
         auto simulation = makeSimulation(scene);
         const Vec3d before = momentumOf(scene, *simulation);
         EXPECT_NEAR(before.x, 64, 0.01);
@@ -112,7 +117,8 @@ TEST(Objects, WaterStaysInABag) {
             {"fluid.bodies=[{\"shape\":\"block\",\"min\":[0.2,0.5,0.2],\"max\":[0.8,0.8,0.8]}]",
              "objects=[{\"shape\":\"sheet\",\"min\":[0,0.4,0],\"max\":[1,0.4,1],\"youngs_modulus\":"
              "3e6,\"thickness\":0.02}]",
-             R"(grips=[{"min":[0,0,0],"max":[0.051,1,1]},{"min":[0.949,0,0],"max":[1,1,1]},{"min":[0,0,0],"max":[1,1,0.051]},{"min":[0,0,0.949],"max":[1,1,1]}])"});
+             R"(grips=[{"min":[0,0,0],"max":[0.051,1,1]},{"min":[0.949,0,0],"max":[1,1,1]},)"
+             R"({"min":[0,0,0],"max":[1,1,0.051]},{"min":[0,0,0.949],"max":[1,1,1]}])"});
         scene.objects[0].spacing = spacing;
         auto simulation = makeSimulation(scene);
         runUntil(*simulation, 0.35);
@@ -130,7 +136,8 @@ TEST(Objects, WaterStaysInABag) {
 TEST(Objects, KeepOutOfEachOther) {
     Scene scene = sceneOf(
         {"simulation.gravity=0,0,0", "domain.max=3,1,1",
-         R"(objects=[{"shape":"block","min":[0.2,0.4,0.4],"max":[0.4,0.6,0.6],"velocity":[1,0,0],"youngs_modulus":1e5},)"
+         R"(objects=[{"shape":"block","min":[0.2,0.4,0.4],"max":[0.4,0.6,0.6],"velocity":[1,0,)"
+         R"(0],"youngs_modulus":1e5},)"
          R"({"shape":"block","min":[0.6,0.4,0.4],"max":[0.8,0.6,0.6],"youngs_modulus":1e5}])"});
     auto simulation = makeSimulation(scene);
     const Vec3d before = momentumOf(scene, *simulation);
@@ -148,12 +155,14 @@ TEST(Objects, KeepOutOfEachOther) {
 // The built-in bonds and the plain ones, which drive from outside: a block that is held at one end
 // falls, swings, and is hit by water.
 TEST(Objects, BondsAgreeWithPlainOnesThatDriveFromOutside) {
-    Scene scene = sceneOf(
-        {"domain.max=1,1,0.4",
-         R"(fluid.bodies=[{"shape":"block","min":[0.5,0.65,0.1],"max":[0.7,0.8,0.3],"velocity":[0,-1,0]}])",
-         R"(objects=[{"shape":"block","min":[0.2,0.5,0.1],"max":[0.8,0.6,0.3],"youngs_modulus":2e6}])",
-         R"(grips=[{"min":[0.1,0.4,0],"max":[0.201,0.7,0.4]}])", "compute.precision=double",
-         "time.mode=fixed", "time.step=0.0001"});
+    Scene scene =
+        sceneOf({"domain.max=1,1,0.4",
+                 R"(fluid.bodies=[{"shape":"block","min":[0.5,0.65,0.1],"max":[0.7,0.8,0.3],)"
+                 R"("velocity":[0,-1,0]}])",
+                 R"(objects=[{"shape":"block","min":[0.2,0.5,0.1],"max":[0.8,0.6,0.3],)"
+                 R"("youngs_modulus":2e6}])",
+                 R"(grips=[{"min":[0.1,0.4,0],"max":[0.201,0.7,0.4]}])", "compute.precision=double",
+                 "time.mode=fixed", "time.step=0.0001"});
     auto built = makeSimulation(scene), driven = makeSimulation(scene);
     BondedReference reference(scene, 0.0002, 2);
     driven->drive(&reference);
@@ -207,7 +216,8 @@ TEST(Objects, WhatTearsOpenKeepsFluidOut) {
          R"(objects=[{"shape":"block","min":[0.2,0,0],"max":[0.8,0.48,0.1],"youngs_modulus":1e6}])",
          R"(cuts=[{"time":0,"min":[0.49,0,0],"max":[0.51,1,1]}])",
          R"(grips=[{"min":[0.1,0,0],"max":[0.28,0.6,0.1],"keyframes":[[0,0,0,0],[0.3,-0.15,0,0]]},
-                                     {"min":[0.72,0,0],"max":[0.9,0.6,0.1],"keyframes":[[0,0,0,0],[0.3,0.15,0,0]]}])"});
+                                     {"min":[0.72,0,0],"max":[0.9,0.6,0.1],
+                                       "keyframes":[[0,0,0,0],[0.3,0.15,0,0]]}])"});
     auto simulation = makeSimulation(scene);
     runUntil(*simulation, 0.6);
     double nearest = 1;
@@ -226,10 +236,12 @@ TEST(Objects, WhatTearsOpenKeepsFluidOut) {
 // A ball flies into a block that nobody holds, off its middle: both together keep their momentum,
 // and the block is pushed on.
 TEST(Objects, FloatingSolidsPushAndArePushed) {
-    Scene scene = sceneOf(
-        {"simulation.gravity=0,0,0", "fluid.sound_speed=10",
-         R"(objects=[{"shape":"block","min":[0.6,0.4,0.4],"max":[0.8,0.7,0.6],"youngs_modulus":1e5}])",
-         R"(solids=[{"shape":"sphere","center":[0.42,0.5,0.5],"radius":0.1,"density":2000,"velocity":[1,0,0]}])"});
+    Scene scene =
+        sceneOf({"simulation.gravity=0,0,0", "fluid.sound_speed=10",
+                 R"(objects=[{"shape":"block","min":[0.6,0.4,0.4],"max":[0.8,0.7,0.6],)"
+                 R"("youngs_modulus":1e5}])",
+                 R"(solids=[{"shape":"sphere","center":[0.42,0.5,0.5],"radius":0.1,"density":2000,)"
+                 R"("velocity":[1,0,0]}])"});
     auto simulation = makeSimulation(scene);
     const double mass = massOf(scene, scene.solids[0]).mass;
     const ObjectSample sample = sampleObjects(scene);
@@ -253,8 +265,10 @@ TEST(Objects, FloatingSolidsPushAndArePushed) {
 TEST(Objects, LightSolidsBounceOff) {
     Scene scene = sceneOf(
         {"simulation.gravity=0,0,0", "fluid.sound_speed=10",
-         R"(objects=[{"shape":"block","min":[0.6,0.3,0.3],"max":[0.8,0.7,0.7],"youngs_modulus":1e5}])",
-         R"(solids=[{"shape":"block","min":[0.38,0.4,0.4],"max":[0.55,0.6,0.6],"density":0.2,"velocity":[1,0,0]}])"});
+         R"(objects=[{"shape":"block","min":[0.6,0.3,0.3],"max":[0.8,0.7,0.7],)"
+         R"("youngs_modulus":1e5}])",
+         R"(solids=[{"shape":"block","min":[0.38,0.4,0.4],"max":[0.55,0.6,0.6],"density":0.2,)"
+         R"("velocity":[1,0,0]}])"});
     auto simulation = makeSimulation(scene);
     runUntil(*simulation, 0.12);
     const Vec3d velocity = simulation->measure().solids[0].velocity;
@@ -265,8 +279,10 @@ TEST(Objects, LightSolidsBounceOff) {
 // A ball that falls onto a sheet whose rim is held stays above it, and sags with it.
 TEST(Objects, SheetsCarryBalls) {
     Scene scene = sceneOf(
-        {R"(objects=[{"shape":"sheet","min":[0.2,0.4,0.2],"max":[0.8,0.4,0.8],"spacing":0.025,"youngs_modulus":1e5,"thickness":0.01,"damping":0.3}])",
-         R"(grips=[{"min":[0.1,0.3,0.1],"max":[0.21,0.5,0.9]},{"min":[0.79,0.3,0.1],"max":[0.9,0.5,0.9]}])",
+        {R"(objects=[{"shape":"sheet","min":[0.2,0.4,0.2],"max":[0.8,0.4,0.8],"spacing":0.025,)"
+         R"("youngs_modulus":1e5,"thickness":0.01,"damping":0.3}])",
+         R"(grips=[{"min":[0.1,0.3,0.1],"max":[0.21,0.5,0.9]},{"min":[0.79,0.3,0.1],"max":[0.9,)"
+         R"(0.5,0.9]}])",
          R"(solids=[{"shape":"sphere","center":[0.5,0.55,0.5],"radius":0.1,"density":500}])"});
     auto simulation = makeSimulation(scene);
     runUntil(*simulation, 1);
@@ -284,8 +300,10 @@ TEST(Objects, RunsGoOnFromTheirStates) {
     Scene scene = sceneOf(
         {"domain.max=1,1,0.4",
          R"(fluid.bodies=[{"shape":"block","min":[0.3,0.6,0.1],"max":[0.7,0.8,0.3]}])",
-         R"(objects=[{"shape":"sheet","min":[0.2,0.5,0.05],"max":[0.8,0.5,0.35],"youngs_modulus":1e6,"breaking_strain":0.05}])",
-         R"(grips=[{"min":[0.1,0.4,0],"max":[0.201,0.7,0.4]},{"min":[0.799,0.4,0],"max":[0.9,0.7,0.4]}])",
+         R"(objects=[{"shape":"sheet","min":[0.2,0.5,0.05],"max":[0.8,0.5,0.35],)"
+         R"("youngs_modulus":1e6,"breaking_strain":0.05}])",
+         R"(grips=[{"min":[0.1,0.4,0],"max":[0.201,0.7,0.4]},{"min":[0.799,0.4,0],"max":[0.9,)"
+         R"(0.7,0.4]}])",
          R"(cuts=[{"time":0.1,"min":[0.5,0,0],"max":[0.53,1,0.2]}])"});
     auto first = makeSimulation(scene);
     runUntil(*first, 0.11);

@@ -48,7 +48,8 @@ TEST(Solids, KeepEverybodyOutAtAnySpeed) {
                 Scene scene = cubeWith(
                     {std::string("simulation.formulation=") + formulation,
                      std::string("solids=[") + solid + "]",
-                     R"(fluid.bodies=[{"shape":"block","min":[0.2,0.5,0.2],"max":[0.8,0.9,0.8]}])"});
+                     R"(fluid.bodies=[{"shape":"block","min":[0.2,0.5,0.2],"max":[0.8,0.9,)"
+                     R"(0.8]}])"});
                 scene.fluid.bodies[0].velocity = {0, -speed, 0};
                 auto simulation = makeSimulation(scene);
                 simulation->step(150);
@@ -85,7 +86,8 @@ TEST(Solids, FeelWhatTheFluidFeels) {
             {std::string("simulation.formulation=") + formulation, "simulation.gravity=0,0,0",
              "walls.kind=reflect", "time.cfl=0.1", "domain.max=3,1,1", "fluid.viscosity=1",
              R"(fluid.bodies=[{"shape":"block","min":[0.4,0.3,0.3],"max":[0.8,0.7,0.7]}])",
-             R"(solids=[{"shape":"block","min":[0.2,0.2,0.2],"max":[0.4,0.8,0.8],"velocity":[0.4,0,0.2]}])"});
+             R"(solids=[{"shape":"block","min":[0.2,0.2,0.2],"max":[0.4,0.8,0.8],)"
+             R"("velocity":[0.4,0,0.2]}])"});
         auto simulation = makeSimulation(scene);
         Vec3d impulse;
         for (int k = 0; k < 500; ++k) {  // short ones: loads are those between two steps
@@ -107,8 +109,10 @@ TEST(Solids, AreLiftedByTheWeightOfTheirWater) {
     const Scene scene = cubeWith(
         {"simulation.formulation=delta_sph", "simulation.dimensions=2", "simulation.spacing=0.02",
          "fluid.artificial_viscosity=0.2", "fluid.speed_ratio=8", "time.cfl=0.5",
-         R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[1,0.8,1],"pressure":"hydrostatic"}])",
-         R"(solids=[{"shape":"sphere","center":[0.35,0.4,0.5],"radius":0.15},{"shape":"block","min":[0.65,0.3,0],"max":[0.85,0.5,1]}])"});
+         R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[1,0.8,1],)"
+         R"("pressure":"hydrostatic"}])",
+         R"(solids=[{"shape":"sphere","center":[0.35,0.4,0.5],"radius":0.15},{"shape":"block",)"
+         R"("min":[0.65,0.3,0],"max":[0.85,0.5,1]}])"});
     auto simulation = makeSimulation(scene);
     simulation->step(3000);
     double round = 0, square = 0;

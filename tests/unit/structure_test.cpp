@@ -159,6 +159,26 @@ TEST(Structure, EverySourceFileIsInOneList) {
     }
 }
 
+// In characters, of which UTF-8 has several bytes.
+size_t widthOf(const std::string& line) {
+    return size_t(
+        std::count_if(line.begin(), line.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
+TEST(Structure, LinesFitIntoAHundredColumns) {
+    EXPECT_EQ(widthOf("m/s²"), 4u);
+    for (const fs::path& top : {Source, Root / "tests", Root / "examples"})
+        for (const fs::path& path : filesBelow(top)) {
+            const std::string kind = path.extension().string();
+            if (kind != ".cpp" && kind != ".h" && kind != ".cu") continue;
+            int number = 0;
+            for (const std::string& line : linesOf(path)) {
+                ++number;
+                EXPECT_LE(widthOf(line), 100u) << path << ":" << number;
+            }
+        }
+}
+
 TEST(Structure, UnitTestsMirrorTheSources) {
     for (const char* folder : {"core", "scene", "sim", "measure", "render"})
         EXPECT_TRUE(fs::is_directory(Root / "tests/unit" / folder))

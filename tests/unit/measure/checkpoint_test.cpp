@@ -193,9 +193,8 @@ TEST_F(Checkpoints, FullDiskKeepsTheLastOne) {
 TEST_F(Checkpoints, HoldSolidsThatFloatAndObjects) {
     Scene s = loadScene(SPINDRIFT_SOURCE_DIR "/configs/test/floating_small.json");
     s.compute.backend = Backend::Cpu;
-    setKnob(
-        s,
-        R"(objects=[{"shape":"sheet","min":[0.05,0.55,0.1],"max":[0.25,0.55,0.7],"breaking_strain":0.01}])");
+    setKnob(s, R"(objects=[{"shape":"sheet","min":[0.05,0.55,0.1],"max":[0.25,0.55,0.7],)"
+               R"("breaking_strain":0.01}])");
     setKnob(s, R"(grips=[{"min":[0,0.5,0],"max":[0.06,0.6,1]}])");
     auto first = makeSimulation(s);
     first->step(120);

@@ -52,10 +52,11 @@ double reading(const Scene& scene, const std::string& column) {
 }
 
 TEST(Probes, ColumnsHaveNamesAndUnits) {
-    const Scene scene = poolScene(
-        3,
-        R"([{"name":"a","position":[1.5,2.2,3.2]},{"kind":"line","name":"b","from":[1,2,3],"to":[2,2,3],"count":2},
-                                         {"kind":"height","name":"c","position":[1.5,0,3.2]},{"kind":"front","name":"d","axis":"x"}])");
+    const Scene scene = poolScene(3,
+                                  R"([{"name":"a","position":[1.5,2.2,3.2]},
+             {"kind":"line","name":"b","from":[1,2,3],"to":[2,2,3],"count":2},
+             {"kind":"height","name":"c","position":[1.5,0,3.2]},
+             {"kind":"front","name":"d","axis":"x"}])");
     std::string all;
     const Probes probes(scene);
     for (const Column& c : probes.columns()) all += c.name + "|" + c.unit + " ";
@@ -77,7 +78,8 @@ TEST(Probes, LinearFieldsExactlyAlsoAtTheFloorAndOverASensor) {
             {"name":"disc","position":[2,2.2,3.2],"radius":0.05,"order":"linear"},
             {"name":"ball","position":[1.5,2.2,3.2],"radius":0.05,"order":"linear"},
             {"name":"corner","position":[2,2.01,3.2],"radius":0.03,"order":"linear"},
-            {"kind":"line","name":"line","from":[1.1,2.1,3.2],"to":[1.9,2.3,3.2],"count":3,"order":"linear"}])");
+            {"kind":"line","name":"line","from":[1.1,2.1,3.2],"to":[1.9,2.3,3.2],"count":3,
+              "order":"linear"}])");
         EXPECT_NEAR(reading(scene, "floor.pressure"), pressureAt({1.5, 2, 0}), 1e-2);
         EXPECT_NEAR(reading(scene, "floor.density"), 1002, 1e-4);
         EXPECT_NEAR(reading(scene, "floor.velocity_x"), 2, 1e-5);

@@ -11,11 +11,9 @@ constexpr float width = 1200, height = 800;
 
 // Where a point appears, in pixels from the upper left corner.
 std::array<float, 2> onPicture(const OrbitCamera& camera, Vec3 p) {
-    const Mat4 m = camera.projection(width / height) * camera.view();
-    float clip[4];
-    for (int row = 0; row < 4; ++row)
-        clip[row] = m.at(row, 0) * p.x + m.at(row, 1) * p.y + m.at(row, 2) * p.z + m.at(row, 3);
-    return {(clip[0] / clip[3] + 1) * 0.5f * width, (1 - clip[1] / clip[3]) * 0.5f * height};
+    const glm::vec4 clip =
+        camera.projection(width / height) * camera.view() * glm::vec4(p.x, p.y, p.z, 1);
+    return {(clip.x / clip.w + 1) * 0.5f * width, (1 - clip.y / clip.w) * 0.5f * height};
 }
 
 const OrbitCamera camera{{0.5f, 0.4f, 0.3f}, 35, 20, 3, 40};

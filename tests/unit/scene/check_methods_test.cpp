@@ -1,5 +1,5 @@
-// Every combination of methods is one that README promises, or refused in a line whose advice leads
-// to one.
+// Every combination of methods is one that docs/SCENES.md promises, or refused in a line whose
+// advice leads to one.
 #include "scene/check_methods.h"
 
 #include "core/error.h"

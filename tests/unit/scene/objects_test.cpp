@@ -47,16 +47,16 @@ TEST(ObjectSampling, HasTheMassOfTheMaterial) {
         massOf(sampleObjects(sceneOf(
             R"([{"shape":"block","min":[0.1,0.6,0.1],"max":[0.5,0.8,0.4],"density":500}])"))),
         500 * 0.4 * 0.2 * 0.3, 1e-3);
-    EXPECT_NEAR(
-        massOf(sampleObjects(sceneOf(
-            R"([{"shape":"sheet","min":[0.1,0.6,0.1],"max":[0.5,0.6,0.4],"thickness":0.01,"density":500}])"))),
-        500 * 0.4 * 0.01 * 0.3, 1e-5);
+    EXPECT_NEAR(massOf(sampleObjects(sceneOf(
+                    R"([{"shape":"sheet","min":[0.1,0.6,0.1],"max":[0.5,0.6,0.4],"thickness":0.01,)"
+                    R"("density":500}])"))),
+                500 * 0.4 * 0.01 * 0.3, 1e-5);
     const double ring = 2 * 3.14159265 * 0.2 * 0.01 * 0.6;
-    EXPECT_NEAR(
-        massOf(sampleObjects(sceneOf(
-            R"([{"shape":"tube","center":[0.5,0.5,0.5],"radius":0.2,"height":0.6,"thickness":0.01,"density":500}])"))) /
-            (500 * ring),
-        1, 0.02);
+    EXPECT_NEAR(massOf(sampleObjects(
+                    sceneOf(R"([{"shape":"tube","center":[0.5,0.5,0.5],"radius":0.2,"height":0.6,)"
+                            R"("thickness":0.01,"density":500}])"))) /
+                    (500 * ring),
+                1, 0.02);
     EXPECT_NEAR(massOf(sampleObjects(sceneOf(
                     R"([{"shape":"block","min":[0.1,0.6,0],"max":[0.5,0.8,0],"density":500}])",
                     {"simulation.dimensions=2"}))),
@@ -89,8 +89,9 @@ TEST(ObjectSampling, IsAsStiffAsTheMaterial) {
                     (0.5 * 1.2 * E * e * e * volume),
                 1, 1e-3);
     // A layer, Poisson's ratio 1/3: C11 = 9/8 E, C44 = 3/8 E.
-    const ObjectSample sheet = sampleObjects(sceneOf(
-        R"([{"shape":"sheet","min":[0.1,0.6,0.1],"max":[0.5,0.6,0.4],"thickness":0.01,"youngs_modulus":1e5}])"));
+    const ObjectSample sheet = sampleObjects(
+        sceneOf(R"([{"shape":"sheet","min":[0.1,0.6,0.1],"max":[0.5,0.6,0.4],"thickness":0.01,)"
+                R"("youngs_modulus":1e5}])"));
     const double sheetVolume = 0.4 * 0.3 * 0.01;
     EXPECT_NEAR(energyOf(sheet,
                          [&](Vec3d x) {
@@ -112,9 +113,10 @@ TEST(ObjectSampling, ShellsAreNetsOfTriangles) {
     std::ofstream(path)
         << "v 1 0 0\nv -1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1\n"
            "f 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\nf 4 2 6\nf 1 4 6\n";
-    const Scene scene = sceneOf(
-        R"([{"shape":"shell","path":")" + path +
-        R"(","scale":0.2,"offset":[0.5,0.75,0.5],"thickness":0.01,"density":500,"youngs_modulus":1e5}])");
+    const Scene scene =
+        sceneOf(R"([{"shape":"shell","path":")" + path +
+                R"(","scale":0.2,"offset":[0.5,0.75,0.5],"thickness":0.01,"density":500,)"
+                R"("youngs_modulus":1e5}])");
     const ObjectSample s = sampleObjects(scene);
     EXPECT_EQ(s.size(), 66u);  // edges of 0.28 m, cut twice: 8 x 16 triangles
     EXPECT_EQ(s.bonds.size(), 192u);

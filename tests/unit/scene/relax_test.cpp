@@ -145,7 +145,8 @@ TEST(Relax, OneSeedOnePlacementForAnyNumberOfThreads) {
 TEST(Relax, BodiesSideBySideArePackedTogether) {
     const Scene scene = relaxedScene(
         2, 0.025f,
-        {R"(fluid.bodies=[{"min":[0,0,0],"max":[0.5,1,1],"velocity":[1,0,0]},{"min":[0.5,0,0],"max":[1,1,1]}])"});
+        {R"(fluid.bodies=[{"min":[0,0,0],"max":[0.5,1,1],"velocity":[1,0,0]},{"min":[0.5,0,0],)"
+         R"("max":[1,1,1]}])"});
     const Placement p = placeParticles(scene);
     EXPECT_EQ(p.positions.size(), 1600u);
     EXPECT_LT(evennessOf(scene, p, 1).scatter, 0.005);

@@ -26,9 +26,9 @@ Scene scene(Precision precision) {
         "fluid.bodies=[{\"shape\":\"block\",\"min\":[0,0,0],\"max\":[0.1,0.1,0.2]}]");  // sixteen,
                                                                                         // for other
                                                                                         // places
-    setKnob(
-        s,
-        R"(objects=[{"shape":"block","min":[0.9,0.9,0.9],"max":[1.1,1.1,1.1],"spacing":0.04,"velocity":[0.5,0,-1]}])");
+    setKnob(s,
+            R"(objects=[{"shape":"block","min":[0.9,0.9,0.9],"max":[1.1,1.1,1.1],"spacing":0.04,)"
+            R"("velocity":[0.5,0,-1]}])");
     s.contact = {Influence, Stiffness, Steepness, Damping, Shear};
     return s;
 }

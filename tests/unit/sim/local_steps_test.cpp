@@ -1,4 +1,5 @@
 // Steps of their own for particles (time.mode local), and rest.
+#include "instruction_sets.h"
 #include "scene/json.h"
 #include "sim/simulation.h"
 
@@ -212,7 +213,7 @@ double densityError(Simulation& simulation, double R) {
 // same step, as they do nearly always here, their densities are exact; somebody left out for as
 // long as lists are kept would show.
 TEST(Rest, ListsOfThoseAwakeMissNobody) {
-    for (Simd simd : {Simd::Auto, Simd::Sse}) {
+    for (const Simd simd : instructionSets()) {
         Scene scene = pool();
         scene.compute.simd = simd;
         const auto simulation = makeSimulation(scene);
