@@ -13,7 +13,7 @@ namespace {
 
 // Of the kernel, Wendland's C2, in spacings.
 constexpr double Radius = 2.6;
-constexpr int Steps = 75;
+constexpr int Steps = 100, StepsWithMomentum = 75;
 // The way of a step is so much R^2 grad C (0.2 is unstable), and never more than so many spacings.
 constexpr double Strength = 0.1, Longest = 0.2;
 // The share of a step's way that the next one goes on with (Polyak 1964), beside boundary
@@ -224,6 +224,7 @@ void relax(std::vector<Vec3d>& positions, const Region& region, double spacing, 
     };
     std::vector<Vec3d> ways(positions.size());  // of the step before
     const double momentum = region.boundary.empty() ? 0 : Momentum;
+    const int steps = momentum > 0 ? StepsWithMomentum : Steps;
     auto moved = [&](Vec3d x, Vec3d& before) {
         const Vec3d push = crowd.push(x) + surroundings.push(x);
         Vec3d way = (20 * norm * Strength * radius) * push + momentum * before;
@@ -234,8 +235,8 @@ void relax(std::vector<Vec3d>& positions, const Region& region, double spacing, 
         return into(x + way);
     };
     for (Vec3d& x : positions) x = into(x);
-    for (int step = 0; step < Steps; ++step) {
-        tell("packing particles", double(step) / Steps);
+    for (int step = 0; step < steps; ++step) {
+        tell("packing particles", double(step) / steps);
         crowd.fill(positions, own);
 #pragma omp parallel for schedule(dynamic, 256) num_threads(team)
         for (size_t i = 0; i < positions.size(); ++i) next[i] = moved(positions[i], ways[i]);

@@ -27,7 +27,7 @@ double volumeOf(const Region&, double spacing);  // m^3, in two dimensions m^2
 
 // Moves particles until they are pushed equally from all sides by each other and by what surrounds
 // the region: packing after Colagrossi, Bouscasse, Antuono & Marrone 2012 (Computer Physics
-// Communications 183, 1641), here as 75 steps down the gradient of sum V W over the
+// Communications 183, 1641), here as 75 to 100 steps down the gradient of sum V W over the
 // particles over those of the boundary, and over a fine lattice in what else is outside. Each
 // particle has the volume spacing^d. The same bits for any number of threads; 0 of them: all.
 void relax(std::vector<Vec3d>& positions, const Region&, double spacing, int threads);
