@@ -4,7 +4,7 @@ BUILD ?= build
 ARGS ?=
 CMAKE_ARGS ?=
 
-.PHONY: run test build configure bench validate stress fuzz documents program gpu-check gpu-bundle meson sanitize check-format format release install clean
+.PHONY: run test build configure bench validate stress fuzz documents knobs program gpu-check gpu-bundle meson sanitize check-format format release install clean
 
 # Only what it needs: the tests are built by `make build`.
 run: program
@@ -43,6 +43,11 @@ documents: program
 	docs/fill_in.sh docs/ACCURACY.md $(BUILD)/validation/validation.md $(BUILD)/error/error.md
 	docs/fill_in.sh docs/STABILITY.md $(BUILD)/stress/stability.md
 	cp $(BUILD)/error/*.svg $(BUILD)/stress/*.svg docs/images/
+
+# The knobs in docs/SCENES.md, after a change of source/scene/schema.h.
+knobs: program
+	@$(BUILD)/spindrift schema --markdown > $(BUILD)/knobs.md
+	docs/fill_in.sh docs/SCENES.md $(BUILD)/knobs.md
 
 # One format, by .clang-format: whether it is kept, and what makes it so.
 check-format: install

@@ -356,8 +356,10 @@ int runCommandLine(int argc, const char* const* argv) {
     const CLI::App* validateCommand = addValidate(app, validation);
     StressOptions stressOptions;
     const CLI::App* stressCommand = addStress(app, stressOptions);
-    const CLI::App* schemaCommand =
-        app.add_subcommand("schema", "writes the JSON Schema of scene files");
+    CLI::App* schemaCommand = app.add_subcommand("schema", "writes the JSON Schema of scene files");
+    bool asMarkdown = false;
+    schemaCommand->add_flag("--markdown", asMarkdown,
+                            "writes all knobs as Markdown tables instead");
     app.set_help_flag();
     app.set_help_all_flag("-h,--help", "this text");
     app.footer("\n" + knobTable());
@@ -373,7 +375,7 @@ int runCommandLine(int argc, const char* const* argv) {
     if (*benchCommand) return runBench(benchmark);
     if (*stressCommand) return stress(stressOptions);
     if (*validateCommand) return validate(validation);
-    if (*schemaCommand) writeText("-", jsonSchema());
+    if (*schemaCommand) writeText("-", asMarkdown ? knobReference() : jsonSchema());
     return int(Exit::Ok);
 }
 

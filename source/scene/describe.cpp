@@ -1,4 +1,5 @@
-// Descriptions of the scene format, made from the schema: JSON Schema and the table in --help.
+// Descriptions of the scene format, made from the schema: JSON Schema, the table in --help and the
+// one in docs/SCENES.md.
 #include "scene/json.h"
 #include "scene/read_knobs.h"
 #include "scene/suggest.h"
@@ -91,6 +92,33 @@ template <class T> std::string allowed(const T& value, const Knob& knob) {
         return allowedRange(knob);
 }
 
+// Calls show(path, value, knob) for each knob once; members of lists are [i], with all that any
+// kind of them has.
+template <class Show> void visitKnobsOnce(const Show& show) {
+    Scene scene;
+    visitLists(scene, [](const char*, auto& list, const char*) {
+        list = oneOfEachKind<typename std::decay_t<decltype(list)>::value_type>();
+    });
+    std::vector<std::string> seen;
+    visitKnobs(scene, [&](std::string path, const auto& value, const Knob& knob) {
+        if (const size_t bracket = path.find('['); bracket != std::string::npos)
+            path[bracket + 1] = 'i';
+        if (std::find(seen.begin(), seen.end(), path) != seen.end()) return;
+        seen.push_back(path);
+        show(path, value, knob);
+    });
+}
+
+// Text in a cell of a Markdown table.
+std::string cell(const std::string& text) {
+    std::string escaped;
+    for (const char c : text) {
+        if (c == '|' || c == '*' || c == '<') escaped += '\\';
+        escaped += c;
+    }
+    return escaped;
+}
+
 }  // namespace
 
 std::string jsonSchema() {
@@ -135,21 +163,28 @@ std::vector<std::pair<std::string, std::string>> restartKnobs(const Scene& scene
 }
 
 std::string knobTable() {
-    Scene scene;
-    visitLists(scene, [](const char*, auto& list, const char*) {
-        list = oneOfEachKind<typename std::decay_t<decltype(list)>::value_type>();
-    });
     std::string table;
-    std::vector<std::string> seen;
-    visitKnobs(scene, [&](std::string path, const auto& value, const Knob& knob) {
-        if (const size_t bracket = path.find('['); bracket != std::string::npos)
-            path[bracket + 1] = 'i';
-        if (std::find(seen.begin(), seen.end(), path) != seen.end()) return;
-        seen.push_back(path);
+    visitKnobsOnce([&](const std::string& path, const auto& value, const Knob& knob) {
         table += fmt::format("  {:<32} {:<14} {}{}\n{:<50}{}\n", path, plain(value), knob.help,
                              knob.live ? "" : " *", "", allowed(value, knob));
     });
     return "Knobs (path, default, meaning; * = changing it restarts the scene):\n" + table;
+}
+
+std::string knobReference() {
+    std::string text, section = "none yet";
+    visitKnobsOnce([&](const std::string& path, const auto& value, const Knob& knob) {
+        const size_t dot = path.rfind('.');
+        const std::string parent = dot == std::string::npos ? "" : path.substr(0, dot);
+        if (parent != section)
+            text += fmt::format(
+                "{}### {}\n\n| knob | default | allowed | meaning |\n|---|---|---|---|\n",
+                text.empty() ? "" : "\n", parent.empty() ? "The scene" : "`" + parent + "`");
+        section = parent;
+        text += fmt::format("| `{}`{} | {} | {} | {} |\n", path, knob.live ? "" : " \\*",
+                            cell(plain(value)), cell(allowed(value, knob)), cell(knob.help));
+    });
+    return text;
 }
 
 }  // namespace spindrift

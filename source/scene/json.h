@@ -34,5 +34,7 @@ void requireRanges(const Scene&, const std::string& place);
 std::string jsonSchema();
 // One line a knob: path, default, range and unit, help. Restart knobs are marked.
 std::string knobTable();
+// The same as Markdown, a table for each part of a scene: what docs/SCENES.md ends with.
+std::string knobReference();
 
 }  // namespace spindrift

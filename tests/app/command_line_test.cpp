@@ -123,6 +123,8 @@ TEST_F(CommandLine, SchemaIsJson) {
     EXPECT_EQ(outcome.code, 0);
     const Json schema = parseJson(outcome.text, "schema");
     EXPECT_EQ(schema["properties"]["simulation"]["properties"]["spacing"]["type"], "number");
+    const std::string tables = call("schema --markdown").text;
+    EXPECT_NE(tables.find("\n| `fluid.viscosity` | 0.001 |"), std::string::npos) << tables;
 }
 
 TEST_F(CommandLine, HelpHasOptionsAndKnobs) {

@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <set>
 
 namespace spindrift {
@@ -198,6 +200,16 @@ TEST(Schema, TableHasEveryKnobAndItsUnit) {
     for (const char* text : {"fluid.viscosity", "Pa s", "fluid.bodies[i].height",
                              "wendland_c2|cubic_spline|wendland_c4"})
         EXPECT_NE(table.find(text), std::string::npos) << text;
+}
+
+// Below its mark docs/SCENES.md is what `spindrift schema --markdown` writes.
+TEST(Schema, ReferenceInTheDocsIsUpToDate) {
+    std::ifstream file(SPINDRIFT_SOURCE_DIR "/docs/SCENES.md");
+    const std::string page{std::istreambuf_iterator<char>(file), {}}, mark = "\n<!-- knobs -->\n\n";
+    const size_t at = page.find(mark);
+    ASSERT_NE(at, std::string::npos) << "docs/SCENES.md has no line <!-- knobs -->";
+    EXPECT_EQ(page.substr(at + mark.size()), knobReference())
+        << "`make knobs` brings docs/SCENES.md up to date";
 }
 
 }  // namespace
