@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <regex>
 #include <set>
 #include <sstream>
 #include <string>
@@ -177,6 +178,38 @@ TEST(Structure, LinesFitIntoAHundredColumns) {
                 EXPECT_LE(widthOf(line), 100u) << path << ":" << number;
             }
         }
+}
+
+// All that the expression's first group matches in a text.
+std::vector<std::string> matchesOf(const std::string& text, const char* expression) {
+    const std::regex pattern(expression);
+    std::vector<std::string> found;
+    for (std::sregex_iterator m(text.begin(), text.end(), pattern), end; m != end; ++m)
+        found.push_back((*m)[1]);
+    return found;
+}
+
+// Links go from the page's folder, names of files from the root or from source/.
+TEST(Structure, PagesNameFilesThatExist) {
+    std::vector<fs::path> pages = {Root / "README.md"};
+    for (const fs::path& path : filesBelow(Root / "docs"))
+        if (path.extension() == ".md") pages.push_back(path);
+    size_t links = 0, names = 0;
+    for (const fs::path& page : pages) {
+        std::string text;
+        for (const std::string& line : linesOf(page)) text += line + "\n";
+        for (const std::string& link : matchesOf(text, R"(\]\(([^)#:]+)[)#])")) {
+            ++links;
+            EXPECT_TRUE(fs::exists(page.parent_path() / link)) << page << " links to " << link;
+        }
+        for (const std::string& name : matchesOf(text, R"(`((?:\w+/)+\w+\.\w+)`)")) {
+            ++names;
+            EXPECT_TRUE(fs::exists(Root / name) || fs::exists(Source / name))
+                << page << " names " << name;
+        }
+    }
+    EXPECT_GT(links, 100u) << "found too few links to believe it";
+    EXPECT_GT(names, 100u) << "found too few names to believe it";
 }
 
 TEST(Structure, UnitTestsMirrorTheSources) {
