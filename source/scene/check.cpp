@@ -1,5 +1,6 @@
 #include "scene/check.h"
 
+#include "scene/body_lattice.h"
 #include "core/error.h"
 #include "scene/check_methods.h"
 #include "scene/check_things.h"

@@ -1,11 +1,12 @@
 #include "scene/particles.h"
 
+#include "scene/body_lattice.h"
 #include "scene/body_parts.h"
 #include "scene/convex.h"
 #include "scene/lattice.h"
 #include "scene/motion.h"
 #include "scene/particle_file.h"
-#include "scene/relax.h"
+#include "scene/pack.h"
 #include "scene/sample_object.h"
 #include "scene/sample_solid.h"
 #include "scene/start_fields.h"
@@ -14,409 +15,54 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
-#include <random>
 
 namespace spindrift {
 namespace {
 
-// Counts beyond this stay here, so that a product of three fits in 64 bits.
-constexpr double MaxPlanes = 2e6;
-
-// A lattice in doubles: point (i, j, k) is at first + i * step, per axis.
-struct Lattice {
-    int64_t n[3];
-    Vec3d first, step;
-    Vec3d at(int64_t i, int64_t j, int64_t k) const {
-        return {first.x + i * step.x, first.y + j * step.y, first.z + k * step.z};
-    }
-};
-
-// In two dimensions there is none along z.
-double leastStep(const Lattice& l) {
-    return std::min({l.step.x, l.step.y, l.step.z > 0 ? l.step.z : l.step.x});
-}
-
-int64_t planes(double ratio) {
-    return std::isfinite(ratio) ? int64_t(std::clamp(ratio, 0.0, MaxPlanes)) : int64_t(MaxPlanes);
-}
-
-// In two dimensions z has one layer.
-bool flat(const Scene& scene, int axis) { return scene.simulation.dimensions == 2 && axis == 2; }
-
-// The planes of a body along an axis, m from the domain's lower corner: a cornered one's begin half
-// a step inside its lower corner, a round body's are symmetric about its centre.
-struct Planes {
-    int64_t count;
-    double first, step;
-};
-Planes planesOf(const Scene& scene, const Body& body, int axis, double step) {
-    if (flat(scene, axis)) return {1, 0.5 * scene.domain.size()[axis], 0};
-    const double origin = scene.domain.min[axis];
-    if (!isBox(body)) {
-        const int64_t n = planes(std::round(2 * halfExtent(body)[axis] / step));
-        return {n, convexOf(body, 3).middle[axis] - 0.5 * step * double(n - 1) - origin, step};
-    }
-    const auto [low, count, s] = layersOf(scene, body, axis, step);
-    // A body that ends at the wall must not round up into it.
-    const double room = double(scene.domain.max[axis]) - low;
-    const int64_t n = count > 0 && double(count) * s > room + 0.25 * s ? count - 1 : count;
-    return {n, low + 0.5 * s - origin, s};
-}
-
-// The body's cell-centred lattice relative to domain.min.
-Lattice bodyLattice(const Scene& scene, const Body& body) {
-    const Vec3d step = latticeStep(scene);
-    Lattice lattice{{}, {}, step};
-    if (flat(scene, 2)) lattice.step.z = 0;
-    if (body.shape == Shape::File) return lattice;  // no point
-    for (int k = 0; k < 3; ++k) {
-        const Planes p = planesOf(scene, body, k, step[k]);
-        lattice.n[k] = p.count, lattice.first[k] = p.first, lattice.step[k] = p.step;
-    }
-    return lattice;
-}
-
-std::vector<Lattice> latticesOf(const Scene& scene) {
-    std::vector<Lattice> lattices;
-    for (const Body& body : scene.fluid.bodies) lattices.push_back(bodyLattice(scene, body));
-    return lattices;
-}
-
-// Whether p, relative to domain.min, lies in the body. Flat sides are taken where the lattice ends,
-// half a spacing beyond its last plane.
-bool contains(const Body& body, const Lattice& lattice, Vec3d origin, Vec3d p) {
-    if (body.shape == Shape::File) return false;
-    for (int k = 0; k < 3; ++k) {
-        if (!hasFlatEnds(body, k)) continue;
-        const double low = lattice.first[k] - 0.5 * lattice.step[k];
-        if (p[k] < low || p[k] > low + double(lattice.n[k]) * lattice.step[k]) return false;
-    }
-    if (body.shape == Shape::Block) return true;
-    if (body.shape == Shape::Wedge) {
-        const Convex wedge = convexOf(body, 2);
-        return wedge.nearest(p + origin - wedge.middle).distance <= 1e-6 * lattice.step.x;
-    }
-    if (body.shape == Shape::Mesh) {  // files round coordinates
-        const Convex mesh = convexOf(body, 3);
-        return mesh.nearest(p + origin - mesh.middle).distance <= 1e-4 * lattice.step.x;
-    }
-    Vec3d d = p - (toDouble(body.center) - origin);
-    if (lattice.step.z == 0) d.z = 0;  // two dimensions
-    if (body.shape == Shape::Cylinder) d[int(body.axis)] = 0;
-    // The tolerance keeps lattice points on the surface on both sides of the centre alike.
-    return length(d) <= double(body.radius) + 1e-6 * lattice.step.x;
-}
-
-// Layers of boundary particles on each face of an axis, none where it has none: all that fluid half
-// a spacing from the face can see. Classic: one.
-int64_t wallLayers(const Scene& scene, int axis) {
-    if (scene.domain.periodic(axis) || flat(scene, axis)) return 0;
-    if (scene.simulation.formulation == Formulation::Classic) return 1;
-    return boundaryLayers(scene);
-}
-
-// The lattice whose outer layers are boundary particles. Default: it continues the fluid's lattice,
-// the first layer half a spacing outside each face. Classic: 2G points an edge at 0.999 i L/(2G-1),
-// G = ceil(L/R) rounded as the original's floats do.
-Lattice wallLattice(const Scene& scene) {
-    Lattice lattice{};
-    const Vec3d size = scene.domain.size(), step = wallStep(scene);
-    const float R = supportRadius(scene);
-    for (int k = 0; k < 3; ++k) {
-        if (scene.simulation.formulation == Formulation::Classic) {
-            const float side = scene.domain.max[k] - scene.domain.min[k];
-            lattice.n[k] = std::max<int64_t>(2, planes(2 * double(std::ceil(side / R))));
-            lattice.step[k] = 0.999 * size[k] / double(lattice.n[k] - 1);
-        } else {
-            const int64_t inside =
-                flat(scene, k) ? 1 : std::max<int64_t>(1, planes(std::round(size[k] / step[k])));
-            lattice.step[k] = flat(scene, k) ? size[k] : step[k];
-            lattice.n[k] = inside + 2 * wallLayers(scene, k);
-            lattice.first[k] = (0.5 - double(wallLayers(scene, k))) * lattice.step[k];
-        }
-    }
-    return lattice;
-}
-
-// The points of a lattice that are not in its inside.
-struct Shell {
-    Lattice lattice;
-    int64_t layers[3];
-    int64_t count() const {
-        int64_t all = 1, inner = 1;
-        for (int k = 0; k < 3; ++k) {
-            all *= lattice.n[k];
-            inner *= std::max<int64_t>(0, lattice.n[k] - 2 * layers[k]);
-        }
-        return all - inner;
-    }
-    bool contains(int64_t i, int axis) const {
-        return i < layers[axis] || i >= lattice.n[axis] - layers[axis];
-    }
-};
-
-Shell wallShell(const Scene& scene) {
-    return {wallLattice(scene), {wallLayers(scene, 0), wallLayers(scene, 1), wallLayers(scene, 2)}};
-}
-
-void placeShell(const Shell& shell, std::vector<Vec3>& out) {
-    const Lattice& l = shell.lattice;
-    out.reserve(size_t(shell.count()));
-    for (int64_t k = 0; k < l.n[2]; ++k)
-        for (int64_t j = 0; j < l.n[1]; ++j)
-            for (int64_t i = 0; i < l.n[0]; ++i) {
-                if (shell.contains(i, 0) || shell.contains(j, 1) || shell.contains(k, 2))
-                    out.push_back(toFloat(l.at(i, j, k)));
-                else
-                    i = l.n[0] - shell.layers[0] - 1;  // on to the far face
-            }
-}
-
-bool relaxed(const Scene& scene) { return scene.simulation.placement == StartPlaces::Relaxed; }
-
-// Uniform in [-reach, reach] along each axis that the scene has. The same numbers from every
-// standard library.
-class Jitter {
-public:
-    Jitter(const Scene& scene, double reach)  // in spacings
-        : random_(unsigned(scene.simulation.seed)),
-          dimensions_(scene.simulation.dimensions),
-          reach_(reach * double(scene.simulation.spacing)) {}
-    Vec3d next() {
-        Vec3d d{0, 0, 0};
-        if (reach_ == 0) return d;
-        for (int k = 0; k < dimensions_; ++k)
-            d[k] = reach_ * (2 * (random_() + 0.5) / 4294967296.0 - 1);
-        return d;
-    }
-    size_t oneOf(size_t count) { return random_() % count; }
-
-private:
-    std::mt19937 random_;
-    int dimensions_;
-    double reach_;  // m
-};
-
-// Signed distance from a shape's surface at p, relative to domain.min, m: positive outside.
-double distanceFrom(const Scene& scene, const Convex& shape, Vec3d p) {
-    return shape.nearest(p + toDouble(scene.domain.min) - shape.middle).distance;
-}
-
-std::vector<Convex> solidsOf(const Scene& scene) {
-    std::vector<Convex> solids;
-    for (const Solid& solid : scene.solids)
-        solids.push_back(convexOf(solid, scene.simulation.dimensions));
-    return solids;
-}
-
-// Whether p lies in a solid or a thin skin around it, in which no fluid starts. Lattices that don't
-// end at the surface must fill the space in front of it in the mean: a tank with a wedge on its
-// floor, H/dx = 40, has 0.5 % error of pressure with a skin of 0.1 dx, 1.7 % with 0.3 dx. Where
-// layers are parallel to a face and don't fit, there is one too few rather than one too many, which
-// bursts.
-bool isTaken(const Scene& scene, const std::vector<Convex>& solids, double besideFaces, Vec3d p) {
+// Whether p lies in a solid or a thin skin around it, in which no fluid starts; only in one that
+// the lattice is to fit to, for fluid that is packed. Where layers are parallel to a face and don't
+// fit, there is one too few rather than one too many, which bursts.
+bool isTaken(const Scene& scene, const std::vector<Convex>& solids, double besideFaces,
+             bool byFacesOnly, Vec3d p) {
     const double skin = 0.1 * double(scene.simulation.spacing);
     for (size_t s = 0; s < solids.size(); ++s) {
-        const double least = isFace(scene.solids[s]) ? std::max(besideFaces, skin) : skin;
-        if (distanceFrom(scene, solids[s], p) < least) return true;
+        const bool face = isFace(scene.solids[s]);
+        if (byFacesOnly && !face) continue;
+        if (distanceFrom(scene, solids[s], p) < (face ? std::max(besideFaces, skin) : skin))
+            return true;
     }
     return false;
 }
 
-// Where a particle begins, relative to domain.min, and of which body it has the rest.
-struct Place {
-    Vec3d at;
-    size_t body;
-};
-
-// Whether a particle of this body lies nearer to p than 0.98 spacings. Lattices that don't match
-// and come nearer squeeze particles (0.95 spacings: 6 %, 0.78: 12 %), and their fluid bursts apart
-// in the first steps, faster than a first-order integrator follows.
-bool crowds(const Body& body, const Lattice& l, Vec3d origin, Vec3d p) {
-    const double least = 0.98 * leastStep(l);
-    int64_t low[3];
-    for (int k = 0; k < 3; ++k)
-        low[k] = l.step[k] > 0 ? int64_t(std::floor((p[k] - l.first[k]) / l.step[k])) : 0;
-    for (int corner = 0; corner < 8; ++corner) {
-        int64_t at[3];
-        bool inside = true;
-        for (int k = 0; k < 3; ++k)
-            at[k] = low[k] + (corner >> k & 1), inside = inside && at[k] >= 0 && at[k] < l.n[k];
-        const Vec3d q = l.at(at[0], at[1], at[2]);
-        if (inside && length(p - q) < least && contains(body, l, origin, q)) return true;
-    }
-    return false;
-}
-
-// Appends the points of body `b` that are not in an earlier body or a solid.
+// Appends the points of body `b` that are not in an earlier body or a solid; those near slants
+// apart.
 void placeBody(const Scene& scene, const std::vector<Lattice>& lattices, size_t b,
-               const std::vector<Convex>& solids, Jitter& jitter, std::vector<Place>& out) {
+               const std::vector<Convex>& solids, const Slants& slants, std::vector<Place>& out,
+               std::vector<Candidate>& near) {
     const std::vector<Body>& bodies = scene.fluid.bodies;
     const Vec3d origin = toDouble(scene.domain.min);
     const Lattice& l = lattices[b];
     const bool fits = areSidesWhole(scene) || relaxed(scene);
     const double besideFaces = fits ? 0 : 0.4 * leastStep(l);
+    auto crowded = [&](Vec3d p) {
+        for (size_t e = 0; e < b; ++e)
+            if (crowds(bodies[e], lattices[e], origin, p)) return true;
+        return false;
+    };
     for (int64_t k = 0; k < l.n[2]; ++k)
         for (int64_t j = 0; j < l.n[1]; ++j)
             for (int64_t i = 0; i < l.n[0]; ++i) {
                 const Vec3d p = l.at(i, j, k);
-                bool free =
-                    contains(bodies[b], l, origin, p) && !isTaken(scene, solids, besideFaces, p);
-                for (size_t e = 0; e < b && free; ++e)
-                    free = !crowds(bodies[e], lattices[e], origin, p);
-                if (free) out.push_back({p + jitter.next(), b});
+                const double d = slants.distance(p);
+                const bool isNear = d < slants.reach();
+                if (!contains(bodies[b], l, origin, p) ||
+                    isTaken(scene, solids, besideFaces, isNear, p) || crowded(p))
+                    continue;
+                if (!isNear)
+                    out.push_back({p, b});
+                else if (const CellLeft left = slants.leftOf(l, p, d); left.share > 0)
+                    near.push_back({{left.middle, b}, d, left.share});
             }
-}
-
-// The body's shape with its flat sides where its lattice ends, or at a side of the domain that is
-// nearer than half a spacing from there, and far beyond that where the domain is periodic: the
-// fluid goes on there.
-Form fitted(const Scene& scene, const Body& body, const Lattice& l) {
-    const Vec3d size = scene.domain.size(), origin = toDouble(scene.domain.min);
-    const double dx = scene.simulation.spacing;
-    Form form = body;
-    for (int k = 0; k < scene.simulation.dimensions; ++k) {
-        const bool ends = !isBox(body);
-        if (!hasFlatEnds(body, k)) continue;
-        double low = l.first[k] - 0.5 * dx, high = low + double(l.n[k]) * dx;
-        // Sides that are no whole number of spacings: the packing needs no layers.
-        const double side = 2 * halfExtent(body)[k];
-        if (std::abs(side - (high - low)) > 1e-3 * dx) {
-            low = convexOf(body, 3).middle[k] - 0.5 * side - origin[k], high = low + side;
-        }
-        if (low < 0.5 * dx) low = 0;
-        if (high > size[k] - 0.5 * dx) high = size[k];
-        if (scene.domain.periodic(k) && low == 0 && high == size[k])
-            low -= 100 * size[k], high += 100 * size[k];
-        if (ends)
-            form.center[k] = float(origin[k] + 0.5 * (low + high)), form.height = float(high - low);
-        else
-            form.min[k] = float(origin[k] + low), form.max[k] = float(origin[k] + high);
-    }
-    return form;
-}
-
-std::vector<Form> fittedBodies(const Scene& scene, const std::vector<Lattice>& lattices) {
-    std::vector<Form> forms;
-    for (size_t b = 0; b < lattices.size(); ++b)
-        forms.push_back(fitted(scene, scene.fluid.bodies[b], lattices[b]));
-    return forms;
-}
-
-// Some forms together, without the solids.
-Region regionOf(const Scene& scene, const std::vector<Form>& forms) {
-    const Vec3d size = scene.domain.size(), origin = toDouble(scene.domain.min);
-    const int d = scene.simulation.dimensions;
-    std::vector<Convex> bodies;
-    Region region;
-    region.dimensions = d;
-    region.low = size, region.high = {0, 0, 0};
-    for (const Form& form : forms) {
-        bodies.push_back(convexOf(form, d));
-        const Vec3d middle = bodies.back().middle - origin, half = halfExtent(form);
-        for (int k = 0; k < 3; ++k) {
-            region.low[k] = std::max(std::min(region.low[k], middle[k] - half[k]), 0.0);
-            region.high[k] = std::min(std::max(region.high[k], middle[k] + half[k]), size[k]);
-        }
-    }
-    if (d == 2) region.low.z = 0, region.high.z = size.z;
-    // What ends well before a periodic side has air beyond it, all the same.
-    for (int k = 0; k < d; ++k) {
-        const double far = 4 * double(scene.simulation.spacing);
-        region.periodic[k] =
-            scene.domain.periodic(k) && (region.low[k] < far || region.high[k] > size[k] - far);
-        if (region.periodic[k]) region.low[k] = 0, region.high[k] = size[k];
-    }
-    region.inside = [&scene, bodies, solids = solidsOf(scene)](Vec3d p, double width) {
-        auto within = [&](const Convex& shape) {
-            return std::clamp(0.5 - distanceFrom(scene, shape, p) / width, 0.0, 1.0);
-        };
-        double share = 0;
-        for (const Convex& body : bodies) share += within(body);
-        share = std::min(share, 1.0);
-        for (const Convex& solid : solids) share = std::min(share, 1 - within(solid));
-        return share;
-    };
-    return region;
-}
-
-// Packed against the same boundary particles that fluid will feel: against a wall that is a
-// continuum it comes 0.1 spacings nearer, and is pushed off when the run begins.
-void addBoundary(const Scene& scene, Region& region) {
-    const int d = scene.simulation.dimensions;
-    const double dx = scene.simulation.spacing;
-    const bool walls = scene.walls.kind == WallKind::Particles;
-    for (const Solid& solid : scene.solids) {
-        const SolidSample sample = sampleSolid(scene, solid);
-        for (size_t i = 0; i < sample.positions.size(); ++i) {
-            region.boundary.push_back(toDouble(sample.positions[i]));
-            region.boundaryVolumes.push_back(double(sample.volumes[i]) * std::pow(dx, d));
-        }
-    }
-    if (walls) {
-        std::vector<Vec3> points;
-        placeShell(wallShell(scene), points);
-        const Vec3d step = wallStep(scene);
-        for (const Vec3& p : points) region.boundary.push_back(toDouble(p));
-        region.boundaryVolumes.resize(region.boundary.size(),
-                                      step.x * step.y * (d == 2 ? 1 : step.z));
-    }
-    region.air = [&scene, walls, d, inside = region.inside, solids = solidsOf(scene)](
-                     Vec3d p, double width) {
-        auto within = [&](double distance) { return std::clamp(0.5 - distance / width, 0.0, 1.0); };
-        double share = 1;
-        for (int k = 0; k < d && walls; ++k)
-            if (!scene.domain.periodic(k))
-                share = std::min(share, within(std::max(-p[k], p[k] - scene.domain.size()[k])));
-        for (const Convex& s : solids)
-            share = std::min(share, 1 - within(distanceFrom(scene, s, p)));
-        return std::max(0.0, share - inside(p, width));
-    };
-}
-
-// From a random start: up to a spacing away from the lattice along each axis (half a spacing leaves
-// its rows to be seen), but in the region. As many as fit: a lattice in a round body has a few too
-// many or too few.
-void relaxPlaces(const Scene& scene, const std::vector<Lattice>& lattices, bool isCut,
-                 std::vector<Place>& places) {
-    Region region = regionOf(scene, fittedBodies(scene, lattices));
-    if (scene.simulation.formulation != Formulation::Classic) addBoundary(scene, region);
-    const double dx = latticeStep(scene).x;
-    Jitter random(scene, 1);
-    auto near = [&](Vec3d at) {
-        for (int tries = 0; tries < 50; ++tries)
-            if (const Vec3d to = at + random.next(); region.inside(to, dx) > 0.5) return to;
-        return at;
-    };
-    auto adjust = [&](std::vector<Place>& some, double cells) {
-        const size_t wanted = std::max<size_t>(1, size_t(std::llround(cells)));
-        while (some.size() > wanted) {
-            some[random.oneOf(some.size())] = some.back();
-            some.pop_back();
-        }
-        while (some.size() < wanted && !some.empty()) {
-            const Place beside = some[random.oneOf(some.size())];
-            some.push_back(beside);
-        }
-    };
-    if (isCut) {  // none gets from one part to the other
-        const std::vector<double> volumes = bodyVolumes(scene);
-        std::vector<Place> all;
-        for (size_t b = 0; b < volumes.size(); ++b) {
-            std::vector<Place> some;
-            for (const Place& place : places)
-                if (place.body == b) some.push_back(place);
-            adjust(some, volumes[b] / particleVolume(scene));
-            all.insert(all.end(), some.begin(), some.end());
-        }
-        places = all;
-    } else {
-        adjust(places, volumeOf(region, dx) / std::pow(dx, region.dimensions));
-    }
-    std::vector<Vec3d> at;
-    for (const Place& place : places) at.push_back(near(place.at));
-    relax(at, region, dx, scene.compute.threads);
-    for (size_t i = 0; i < places.size(); ++i) places[i].at = at[i];
 }
 
 // Appends the particles of a file as they are, in two dimensions in the layer of the others.
@@ -508,10 +154,6 @@ bool shiftsParticles(const Scene& scene) {
     return f == Formulation::DeltaPlus || f == Formulation::TransportVelocity;
 }
 
-int64_t latticePlanes(const Scene& scene, const Body& body, int axis) {
-    return planesOf(scene, body, axis, latticeStep(scene)[axis]).count;
-}
-
 Placement placeParticles(const Scene& scene) {
     Placement out;
     const std::vector<BodyPart> parts = partsOf(scene);
@@ -525,9 +167,16 @@ Placement placeParticles(const Scene& scene) {
     out.pressures.reserve(expected);
     Jitter jitter(scene, scene.simulation.jitter);
     const std::vector<Convex> solids = solidsOf(scene);
+    const Slants slants(cut, lattices);
     std::vector<Place> places;
+    std::vector<std::vector<Candidate>> near(lattices.size());
     for (size_t b = 0; b < lattices.size(); ++b)
-        placeBody(cut, lattices, b, solids, jitter, places);
+        placeBody(cut, lattices, b, solids, slants, places, near[b]);
+    const size_t first = places.size();
+    for (const std::vector<Candidate>& some : near) choose(some, slants, places);
+    if (!std::all_of(near.begin(), near.end(), areWhole))
+        packBeside(cut, lattices, slants, first, places);
+    for (Place& place : places) place.at = place.at + jitter.next();
     if (!scene.objects.empty())
         std::erase_if(
             places, [objects = ObjectRoom(scene)](const Place& p) { return objects.takes(p.at); });

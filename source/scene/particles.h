@@ -57,8 +57,4 @@ ParticleCount countParticles(const Scene&);
 // by.
 double relaxedCells(const Scene&);
 
-// Number of lattice planes of a body along an axis (0 x, 1 y, 2 z); 0 means that the body is too
-// thin for a particle.
-int64_t latticePlanes(const Scene&, const Body&, int axis);
-
 }  // namespace spindrift

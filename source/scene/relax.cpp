@@ -13,7 +13,6 @@ namespace {
 
 // Of the kernel, Wendland's C2, in spacings.
 constexpr double Radius = 2.6;
-constexpr int Steps = 100, StepsWithMomentum = 75;
 // The way of a step is so much R^2 grad C (0.2 is unstable), and never more than so many spacings.
 constexpr double Strength = 0.1, Longest = 0.2;
 // The share of a step's way that the next one goes on with (Polyak 1964), beside boundary
@@ -21,6 +20,12 @@ constexpr double Strength = 0.1, Longest = 0.2;
 // particles from their places by four. Drops in free space, so packed, lie in rows and swing 8.5
 // instead of 4.8 % too slowly.
 constexpr double Momentum = 0.8;
+
+// Of Wendland's kernel without its factor.
+double weight(double q) {
+    const double rest = 1 - q;
+    return q < 1 ? rest * rest * rest * rest * (1 + 4 * q) : 0;
+}
 
 constexpr int Wide = 4;  // floats in a register that each processor has: starts are alike on all
 
@@ -59,19 +64,32 @@ public:
     // sum V r (1 - q)^3 in radii, which the gradient of Wendland's kernel is but for a factor: away
     // from what is near.
     Vec3d push(Vec3d place) const {
-        const Vec3d x = inRadii(place);
         Push sum;
+        forStretches(place, [&](Vec3d x, int first, int end) { addStretch(x, first, end, sum); });
+        return {total(sum.x), total(sum.y), total(sum.z)};
+    }
+    // sum V W, times R^d over the kernel's factor.
+    double sum(Vec3d place) const {
+        double sum = 0;
+        forStretches(place, [&](Vec3d x, int first, int end) {
+            for (size_t j = size_t(first); j < size_t(end); ++j)
+                sum += double(volume_[j]) * weight(length(x - Vec3d{x_[j], y_[j], z_[j]}));
+        });
+        return sum;
+    }
+
+private:
+    // Calls f(x, first, end) for stretches of those who may be within reach, as seen from x, radii.
+    template <class F> void forStretches(Vec3d place, const F& f) const {
+        const Vec3d x = inRadii(place);
         const Reach zs = flat_ ? Reach{0, 0} : reachOf(x, 2, 1), ys = reachOf(x, 1, 1);
         for (int z = zs.first; z <= zs.last; ++z)
             for (int y = ys.first; y <= ys.last; ++y) {
                 const double gapY = gapTo(x, 1, y), gapZ = flat_ ? 0 : gapTo(x, 2, z),
                              rest = 1 - gapY * gapY - gapZ * gapZ;
-                if (rest > 0) addRow(x, y, z, std::sqrt(rest), sum);
+                if (rest > 0) forRow(x, y, z, std::sqrt(rest), f);
             }
-        return {total(sum.x), total(sum.y), total(sum.z)};
     }
-
-private:
     struct Push {
         float x[Wide]{}, y[Wide]{}, z[Wide]{};
     };
@@ -101,7 +119,7 @@ private:
     int periodOf(int cell, int k) const {
         return cell >= 0 ? cell / cells_[k] : -((cells_[k] - 1 - cell) / cells_[k]);
     }
-    void addRow(Vec3d x, int y, int z, double far, Push& sum) const {
+    template <class F> void forRow(Vec3d x, int y, int z, double far, const F& f) const {
         const int periodY = periodOf(y, 1), periodZ = periodOf(z, 2), n = cells_[0];
         x.y -= periodY * size_.y, x.z -= periodZ * size_.z;
         const int row = ((z - periodZ * cells_[2]) * cells_[1] + y - periodY * cells_[1]) * n;
@@ -109,8 +127,8 @@ private:
         for (int period = periodOf(xs.first, 0); period <= periodOf(xs.last, 0); ++period) {
             const int first = std::max(xs.first - period * n, 0),
                       last = std::min(xs.last - period * n, n - 1);
-            addStretch(x - Vec3d{period * size_.x, 0, 0}, start_[size_t(row + first)],
-                       start_[size_t(row + last) + 1], sum);
+            f(x - Vec3d{period * size_.x, 0, 0}, start_[size_t(row + first)],
+              start_[size_t(row + last) + 1]);
         }
     }
     void addStretch(Vec3d at, int first, int end, Push& sum) const {
@@ -193,13 +211,21 @@ double volumeOf(const Region& region, double spacing) {
     return cells * volume;
 }
 
-void relax(std::vector<Vec3d>& positions, const Region& region, double spacing, int threads) {
-    const int d = region.dimensions, team = threads > 0 ? threads : omp_get_max_threads();
+struct Packing::Crowds {
+    Crowd surroundings, crowd;
+};
+
+Packing::Packing(const Region& region, double spacing, int threads)
+    : region_(region),
+      spacing_(spacing),
+      team_(threads > 0 ? threads : omp_get_max_threads()),
+      crowds_(new Crowds{{region, Radius * spacing}, {region, Radius * spacing}}) {
     const double radius = Radius * spacing;
     std::vector<Vec3d> outside;
     std::vector<double> volumes;
     const double cell = forCells(region, spacing, radius, [&](Vec3d middle, Vec3d sides) {
         // What no particle can see is left out.
+        if (region.isNear && !region.isNear(middle)) return;
         if (region.inside(middle, 2 * (radius + spacing)) <= 0) return;
         const Share share = shareOutside(region, middle, sides);
         if (share.size > 0) outside.push_back(share.centroid), volumes.push_back(share.size);
@@ -207,29 +233,39 @@ void relax(std::vector<Vec3d>& positions, const Region& region, double spacing, 
     for (double& v : volumes) v *= cell;
     outside.insert(outside.end(), region.boundary.begin(), region.boundary.end());
     volumes.insert(volumes.end(), region.boundaryVolumes.begin(), region.boundaryVolumes.end());
-    Crowd surroundings(region, radius), crowd(region, radius);
-    surroundings.fill(outside, volumes);
+    crowds_->surroundings.fill(outside, volumes);
+}
+Packing::~Packing() = default;
+
+Vec3d Packing::into(Vec3d x) const {
+    if (region_.out) x = region_.out(x);
+    for (int k = 0; k < region_.dimensions; ++k) {
+        const double low = region_.low[k], high = region_.high[k], size = high - low;
+        x[k] = region_.periodic[k] ? x[k] - size * std::floor((x[k] - low) / size)
+                                   : std::clamp(x[k], std::min(low + spacing_ / 4, high),
+                                                std::max(high - spacing_ / 4, low));
+    }
+    return x;
+}
+
+void Packing::fill(const std::vector<Vec3d>& positions) {
+    const double own = std::pow(spacing_, region_.dimensions);
+    crowds_->crowd.fill(positions, std::vector<double>(positions.size(), own));
+}
+
+void Packing::relax(std::vector<Vec3d>& positions, int steps) {
     // R^2 grad W = -20 norm / R^d r (1 - q)^3.
-    const double norm = (d == 2 ? 7 : 10.5) / std::numbers::pi;
-    const std::vector<double> own(positions.size(), std::pow(spacing, d));
+    const int d = region_.dimensions;
+    const double norm = (d == 2 ? 7 : 10.5) / std::numbers::pi,
+                 strength = 20 * norm * Strength * Radius * spacing_;
     std::vector<Vec3d> next(positions.size());
-    auto into = [&](Vec3d x) {
-        for (int k = 0; k < d; ++k) {
-            const double low = region.low[k], high = region.high[k], size = high - low;
-            x[k] = region.periodic[k] ? x[k] - size * std::floor((x[k] - low) / size)
-                                      : std::clamp(x[k], std::min(low + spacing / 4, high),
-                                                   std::max(high - spacing / 4, low));
-        }
-        return x;
-    };
     std::vector<Vec3d> ways(positions.size());  // of the step before
-    const double momentum = region.boundary.empty() ? 0 : Momentum;
-    const int steps = momentum > 0 ? StepsWithMomentum : Steps;
+    const double momentum = region_.boundary.empty() ? 0 : Momentum;
     auto moved = [&](Vec3d x, Vec3d& before) {
-        const Vec3d push = crowd.push(x) + surroundings.push(x);
-        Vec3d way = (20 * norm * Strength * radius) * push + momentum * before;
+        const Vec3d push = crowds_->crowd.push(x) + crowds_->surroundings.push(x);
+        Vec3d way = strength * push + momentum * before;
         if (d == 2) way.z = 0;
-        const double far = length(way), most = Longest * spacing;
+        const double far = length(way), most = Longest * spacing_;
         way = (far > most ? most / far : 1) * way;
         before = way;
         return into(x + way);
@@ -237,11 +273,33 @@ void relax(std::vector<Vec3d>& positions, const Region& region, double spacing, 
     for (Vec3d& x : positions) x = into(x);
     for (int step = 0; step < steps; ++step) {
         tell("packing particles", double(step) / steps);
-        crowd.fill(positions, own);
-#pragma omp parallel for schedule(dynamic, 256) num_threads(team)
+        fill(positions);
+#pragma omp parallel for schedule(dynamic, 256) num_threads(team_)
         for (size_t i = 0; i < positions.size(); ++i) next[i] = moved(positions[i], ways[i]);
         positions.swap(next);
     }
+}
+
+std::vector<double> Packing::densities(const std::vector<Vec3d>& positions) {
+    const int d = region_.dimensions;
+    const double own = std::pow(Radius, -d);
+    double lattice = 0;
+    for (int x = -2; x <= 2; ++x)
+        for (int y = -2; y <= 2; ++y)
+            for (int z = d == 2 ? 0 : -2; z <= (d == 2 ? 0 : 2); ++z)
+                lattice += own * weight(std::sqrt(double(x * x + y * y + z * z)) / Radius);
+    fill(positions);
+    std::vector<double> sums(positions.size());
+#pragma omp parallel for schedule(dynamic, 256) num_threads(team_)
+    for (size_t i = 0; i < positions.size(); ++i)
+        sums[i] =
+            (crowds_->crowd.sum(positions[i]) + crowds_->surroundings.sum(positions[i])) / lattice;
+    return sums;
+}
+
+void relax(std::vector<Vec3d>& positions, const Region& region, double spacing, int threads) {
+    const int steps = region.boundary.empty() ? Packing::Steps : Packing::StepsWithMomentum;
+    Packing(region, spacing, threads).relax(positions, steps);
 }
 
 }  // namespace spindrift

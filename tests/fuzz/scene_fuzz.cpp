@@ -3,6 +3,7 @@
 // written, read again and filled with particles. Run by `make fuzz` (libFuzzer, with
 // AddressSanitizer and UndefinedBehaviorSanitizer).
 #include "core/error.h"
+#include "scene/body_lattice.h"
 #include "scene/check.h"
 #include "scene/json.h"
 #include "scene/particles.h"

@@ -291,7 +291,10 @@ TEST(MeshSolids, AreTheSameInEachWriting) {
                 ASSERT_LT(length(sample.positions[i] - first.positions[i]), 1e-5f);
                 ASSERT_NEAR(sample.volumes[i], first.volumes[i], 1e-4f);
             }
-            ASSERT_EQ(fluid.positions, firstFluid.positions);
+            ASSERT_EQ(fluid.positions.size(), firstFluid.positions.size());
+            for (size_t i = 0; i < fluid.positions.size(); ++i)
+                ASSERT_LT(length(fluid.positions[i] - firstFluid.positions[i]),
+                          1e-3f * scene.simulation.spacing);  // packed from what files round
             const Mesh::Weight w = readMesh(solid.path)->weigh(), expected = quads.weigh();
             EXPECT_NEAR(w.volume, expected.volume, 1e-6 * expected.volume);
             EXPECT_LT(length(w.centroid - expected.centroid), 1e-6);
@@ -517,7 +520,7 @@ TEST(MeshSolids, KeepFluidOut) {
                 "boxes.obj",
                 several({boxSurface(c[0], c[1]), turned ? second.inverted() : second}).text());
             scene.solids = {solid};
-            size_t expected = 0;  // a lattice without the boxes
+            size_t expected = 0;  // a lattice without the boxes, where that fits to them
             const auto inBoxes = [&](Vec3d p, double skin) {
                 for (int box = 0; box < 2; ++box) {
                     Vec3d beyond;
@@ -532,7 +535,14 @@ TEST(MeshSolids, KeepFluidOut) {
                     !inBoxes(0.02 * Vec3d{i % 40 + 0.5, i / 40 % 30 + 0.5, i / 1200 + 0.5}, 1e-6);
             const Placement fluid = placeParticles(scene);
             for (const Vec3& p : fluid.positions) ASSERT_FALSE(inBoxes(toDouble(p), 0));
-            EXPECT_EQ(fluid.positions.size(), expected);
+            // Else as many as there is room for: 12.5 layers beside each face of the first two.
+            const bool fits = c[2].x != 0.25;
+            const double boxes = 0.2 * 0.2 * 0.2 + 0.2 * 0.1 * 0.1 - 0.15 * 0.1 * 0.1,
+                         room = 36000 - boxes / (0.02 * 0.02 * 0.02);
+            if (fits)
+                EXPECT_EQ(fluid.positions.size(), expected);
+            else
+                EXPECT_NEAR(double(fluid.positions.size()) / room, 1, 3e-4);
         }
 }
 
