@@ -23,6 +23,8 @@ template <class Device> Measurement SimulationOn<Device>::measure() {
     m.potentialEnergy +=
         pull * mass / 2 * (t.position2 - 2 * n * dot(center, middle) + n * dot(middle, middle));
     m.momentum = mass * Vec3d{t.velocity[0], t.velocity[1], t.velocity[2]};
+    const Vec3d turning{t.turning[0], t.turning[1], t.turning[2]};
+    m.angularMomentum = mass * turning - cross(middle, m.momentum);
     m.centerOfMass = center + toDouble(scene_.domain.min);
     m.meanDensity = t.density / count;
     m.densityError = t.compression / count;

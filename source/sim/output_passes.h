@@ -90,13 +90,15 @@ template <class Value> struct CountValues {
 struct Totals {
     double mass = 0, speed2 = 0, density = 0, compression = 0,
            position2 = 0;  // in masses of the scene's fluid: all but densities
-    double velocity[3] = {0, 0, 0}, position[3] = {0, 0, 0};
+    double velocity[3] = {0, 0, 0}, position[3] = {0, 0, 0}, turning[3] = {0, 0, 0};  // x cross u
     double maxSpeed2 = 0, maxRatio = 0;  // density / that at rest
     int64_t notFinite = 0;
     HD_OUT void add(const Totals& o) {
         mass += o.mass, speed2 += o.speed2, density += o.density, compression += o.compression,
             position2 += o.position2;
-        for (int k = 0; k < 3; ++k) velocity[k] += o.velocity[k], position[k] += o.position[k];
+        for (int k = 0; k < 3; ++k) {
+            velocity[k] += o.velocity[k], position[k] += o.position[k], turning[k] += o.turning[k];
+        }
         maxSpeed2 = o.maxSpeed2 > maxSpeed2 ? o.maxSpeed2 : maxSpeed2;
         maxRatio = o.maxRatio > maxRatio ? o.maxRatio : maxRatio;
         notFinite += o.notFinite;
@@ -117,6 +119,9 @@ struct SumUp {
         one.compression = excess > 0 ? excess : 0;
         one.velocity[0] = mass * ux, one.velocity[1] = mass * uy, one.velocity[2] = mass * uz;
         one.position[0] = mass * x.x, one.position[1] = mass * x.y, one.position[2] = mass * x.z;
+        one.turning[0] = mass * (x.y * uz - x.z * uy),
+        one.turning[1] = mass * (x.z * ux - x.x * uz),
+        one.turning[2] = mass * (x.x * uy - x.y * ux);
         one.position2 = mass * (double(x.x) * x.x + double(x.y) * x.y + double(x.z) * x.z);
         const double sum = speed2 + rho + double(x.x) + double(x.y) + double(x.z);
         one.notFinite = sum - sum == 0 ? 0 : 1;

@@ -54,6 +54,7 @@ struct Measurement {
     double kineticEnergy = 0;              // sum m v^2 / 2
     double potentialEnergy = 0;            // -sum m g.x, zero at the domain's lower corner
     Vec3d momentum;                        // sum m v
+    Vec3d angularMomentum;                 // sum m (x - c) x v, c the middle of the domain
     Vec3d centerOfMass;                    // world coordinates
     double meanDensity = 0;                // kg/m³
     double densityError = 0;               // mean of max(rho/rho0 - 1, 0): compression only

@@ -121,6 +121,7 @@ TEST(TimeSeries, UnitsArePerMetreOfDepthInTwoDimensions) {
                                    {"potential_energy", "J", true},
                                    {"momentum_x", "kg m/s", true},
                                    {"momentum_z", "kg m/s", true},
+                                   {"angular_momentum_z", "kg m²/s", true},
                                    {"wall.pressure_force_x", "N", true},
                                    {"wall.viscous_force_y", "N", true},
                                    {"wall.torque_z", "N m", true},

@@ -57,6 +57,29 @@ TEST(Vertices, RangeLeavesOutliersOut) {
     EXPECT_EQ(plain.max, 0);
 }
 
+TEST(Measurement, MomentaAreSumsOverTheParticles) {
+    for (const Precision precision : {Precision::Float, Precision::Double}) {
+        Scene s = calm();
+        s.domain.min = {-3, 2, 0.5f}, s.domain.max = {-2, 3, 1.5f};
+        s.compute.precision = precision;
+        Placement placement = apart();
+        for (size_t i = 0; i < placement.velocities.size(); ++i)
+            placement.velocities[i] = {float(i % 7), float(i % 11) - 5, float(i % 3)};
+        const auto simulation = makeSimulation(s, placement);
+        const Vec3d middle{-2.5, 2.5, 1};
+        const double mass = 1000 * 0.05 * 0.05 * 0.05;
+        Vec3d momentum, angular;
+        for (const Particle& p : simulation->particles()) {
+            momentum = momentum + mass * p.velocity;
+            angular = angular + mass * cross(p.position - middle, p.velocity);
+        }
+        const Measurement m = simulation->measure();
+        EXPECT_LT(length(m.momentum - momentum), 1e-5 * length(momentum));
+        EXPECT_LT(length(m.angularMomentum - angular), 1e-5 * length(angular));
+        EXPECT_GT(length(angular), 1);
+    }
+}
+
 TEST(Particle, OneIsWhatAllSay) {
     for (Precision precision : {Precision::Float, Precision::Double}) {
         Scene scene = calm();
