@@ -148,9 +148,17 @@ struct TakeMomentum {
     }
 };
 
+// The mouse's hand on a solid that doesn't float: the mass of fluid in its place, kg, 0: nothing
+// stops it; and what it gave to objects in the last step.
+struct Hand {
+    double mass;
+    const Stops* stops;
+};
+
 // v += F / m dt, x += v dt; the same of angular momentum and turn. A solid that the mouse holds
 // goes where it is wanted: one that floats by a damped spring, another one by itself, no faster
-// than a tenth of the speed of sound.
+// than a tenth of the speed of sound. Both hands are as strong. Objects that the solid runs into
+// slow it, as one body with those of their particles that it stops.
 struct MoveFloating {
     using Index = int;
     View v;
@@ -158,9 +166,11 @@ struct MoveFloating {
     SolidMotion* motions;
     const SolidLoad* loads;
     const Touch* touches;
-    double fluidMass;    // kg, of a particle
-    Hold hold;           // target relative to the domain's lower corner
-    double kick, drift;  // shares of the step
+    double fluidMass;  // kg, of a particle
+    Hold hold;         // target relative to the domain's lower corner
+    Hand hand;
+    double kick, drift;                      // shares of the step
+    static constexpr double strongest = 60;  // m/s², of the solid that is held
     HD void operator()(int s) const { bodies[s].mass > 0 ? moveFloating(s) : drag(s); }
     HD void moveFloating(int s) const {
         const RigidBody& body = bodies[s];
@@ -186,29 +196,43 @@ struct MoveFloating {
                 fluidMass * torque + cross(Vec3d{out.x, out.y, out.z}, fluid) + touches[s].torque};
     }
     HD void pull(Touch& w, const RigidBody& body, const SolidMotion& m, const SolidState& s) const {
-        const double rate = 15, most = 60;  // 1/s, m/s²
+        const double rate = 15;  // 1/s
         const Vec3d target{hold.target.x, hold.target.y, hold.target.z};
         const Vec3d wanted = (rate * rate) * (target - Vec3d{s.middle.x, s.middle.y, s.middle.z}) -
                              (2 * rate) * m.velocity;
         const double size = sqrt(dot(wanted, wanted));
-        w.force = w.force + (body.mass * (size > most ? most / size : 1.0)) * wanted;
+        w.force = w.force + (body.mass * (size > strongest ? strongest / size : 1.0)) * wanted;
         w.torque = w.torque - rate * m.angularMomentum;
     }
     HD void drag(int s) const {
         const double time = 0.05, fastest = 0.1 * double(v.c.soundSpeed),
                      dt = v.state->dt;  // s, m/s
         SolidMotion& m = motions[s];
+        const Vec3d before = m.velocity;
         m.velocity = {0, 0, 0};
         if (hold.solid != s) return;
         if (m.left < 0 && !v.solids[s].steady) m.left = v.state->time - dt;
         const Vector<real> at = v.solids[s].middle;
-        const Vec3d wanted =
-            (1 / (dt > time ? dt : time)) *
-            (Vec3d{hold.target.x, hold.target.y, hold.target.z} - Vec3d{at.x, at.y, at.z});
-        const double speed = sqrt(dot(wanted, wanted));
-        m.velocity = (speed > fastest ? fastest / speed : 1.0) * wanted;
+        const Vec3d way =
+            Vec3d{hold.target.x, hold.target.y, hold.target.z} - Vec3d{at.x, at.y, at.z};
+        const double far = sqrt(dot(way, way)), stops = sqrt(strongest * far);
+        double speed = far / (dt > time ? dt : time);
+        if (speed > fastest) speed = fastest;
+        if (hand.mass > 0 && speed > stops) speed = stops;  // it has to be slowed down again
+        m.velocity = (far > 0 ? speed / far : 0) * way;
+        if (hand.mass > 0) m.velocity = pushed(before, m.velocity);
         if (v.c.dimensions == 2) m.velocity.z = 0;
         m.place = m.place + (drift * dt) * m.velocity;
+    }
+    // From one velocity towards another, against the objects in its way.
+    HD Vec3d pushed(Vec3d before, Vec3d wanted) const {
+        const double* given = hand.stops->momentum;
+        const double all = hand.mass + hand.stops->mass,
+                     most = strongest * hand.mass / all * kick * v.state->dt;
+        const Vec3d slowed = before - (kick / all) * Vec3d{given[0], given[1], given[2]},
+                    change = wanted - slowed;
+        const double size = sqrt(dot(change, change));
+        return slowed + (size > most ? most / size : 1.0) * change;
     }
     HD Vec3d wrapped(Vec3d x) const {
         const Constants& c = v.c;
@@ -240,6 +264,7 @@ public:
             faces_.push_back(solid.floats() ? ballsOfAFace(scene, solid) : 1);
         }
         loads_.resize(onHost_.size()), touches_.resize(onHost_.size()), also_.resize(1);
+        takeInHand(scene, -1);
     }
     // `motions` of a run that goes on; none: solids are at their places in the scene.
     void restart(const Scene& scene, std::vector<SolidMotion> motions) {
@@ -306,9 +331,28 @@ public:
                                                    scene.simulation.dimensions});
     }
     void move(const View& v, double fluidMass, const Hold& hold, double kick, double drift) {
-        device_.forEach(v.solidCount,
-                        MoveFloating{v, bodies_.data(), motions_.data(), loads_.data(),
-                                     touches_.data(), fluidMass, hold, kick, drift});
+        device_.forEach(v.solidCount, MoveFloating{v,
+                                                   bodies_.data(),
+                                                   motions_.data(),
+                                                   loads_.data(),
+                                                   touches_.data(),
+                                                   fluidMass,
+                                                   hold,
+                                                   {handMass_, stops_.data()},
+                                                   kick,
+                                                   drift});
+    }
+    // From now on the mouse holds this one, -1: none.
+    void takeInHand(const Scene& scene, int solid) {
+        fill(stops_, std::vector<Stops>(1));
+        handMass_ = 0;
+        if (solid < 0) return;
+        Solid wet = scene.solids[size_t(solid)];
+        wet.density = scene.fluid.restDensity;
+        if (wet.shape != Shape::Plane) handMass_ = massOf(scene, wet).mass;
+    }
+    template <class Sum> void feelStops(int count, const Sum& sum) {
+        device_.reduce(count, sum, stops_.data());
     }
 
 private:
@@ -354,6 +398,8 @@ private:
     Buffer<SolidMotion, Device> motions_{device_};
     Buffer<SolidLoad, Device> loads_{device_};
     Buffer<Touch, Device> touches_{device_}, also_{device_};
+    double handMass_ = 0;                                        // kg
+    Buffer<Stops, Device> stops_{device_};                       // of what the mouse holds
     Buffer<real, Device> change_{device_}, stoppedBy_{device_};  // of fluid, see Bounces
 };
 

@@ -174,6 +174,18 @@ struct StretchBonds {
     }
 };
 
+// Over the particles of objects.
+struct SumStops {
+    ObjectParticles o;
+    VectorField given;  // m/s
+    HD void addTo(Stops& sum, int i) const {
+        const Vector<real> u = load(given, i);
+        if (dot(u, u) == 0) return;
+        const double m = double(load(o.mass, i));
+        sum.add({{m * u.x, m * u.y, m * u.z}, m});
+    }
+};
+
 // v += a dt, x += v dt; who is held goes where its grip is. The box and solids that don't float
 // keep them inside and out.
 struct MoveObjects {
@@ -183,7 +195,10 @@ struct MoveObjects {
     const GripKeys* grips;
     const MotionKey* keys;
     const RigidBody* bodies;  // null: nothing floats
+    int dragged;              // the solid that the mouse holds, -1: none
+    VectorField given;        // m/s, by that; written while there is one
     HD void operator()(int i) const {
+        if (dragged >= 0) store(given, i, Vector<real>{0, 0, 0});
         if (o.grip[i] >= 0) return follow(i, grips[o.grip[i]]);
         const real dt = real(v.state->dt), radius = load(o.radius, i);
         Vector<real> u = addScaled(load(o.velocity, i), dt, load(o.acceleration, i));
@@ -199,7 +214,11 @@ struct MoveObjects {
         else
             u.z = 0, x.z = load(o.position, i).z;
         for (int s = 0; s < v.solidCount; ++s)
-            if (!bodies || bodies[s].mass <= 0) leave(v.solids[s], radius, x, u);
+            if (!bodies || bodies[s].mass <= 0) {
+                const Vector<real> before = u;
+                leave(v.solids[s], radius, x, u);
+                if (s == dragged) store(given, i, u - before);
+            }
         store(o.velocity, i, u), store(o.position, i, x);
     }
     HD void follow(int i, GripKeys g) const {

@@ -40,6 +40,7 @@ public:
             keys.insert(keys.end(), own.begin(), own.end());
         }
         fill(grips_, grips), fill(keys_, keys);
+        given_.resize(vectorSize(padded()));
         if (solidsFloat) press_.resize(vectorSize(padded())), pressedBy_.resize(size_t(padded()));
         acceleration_.resize(vectorSize(padded())), torn_.resize(sample_.size()),
             slot_.resize(sample_.size()), speed_.resize(1);
@@ -125,7 +126,8 @@ public:
     }
     // What objects do to a solid that floats; not where a driver moves them.
     SumPresses pressesOn(const View& v, int solid) { return {v, particles(), presses(), solid}; }
-    void move(const View& v, const RigidBody* bodies) {
+    // `dragged`: the solid that the mouse holds, -1: none.
+    void move(const View& v, const RigidBody* bodies, int dragged) {
         if (driver_)
             device_.forEach(count(), FollowDriver{v.state,
                                                   particles(),
@@ -134,10 +136,14 @@ public:
                                                   {impulse_.data()},
                                                   arrival_});
         else
-            device_.forEach(count(),
-                            MoveObjects{v, particles(), grips_.data(), keys_.data(), bodies});
+            device_.forEach(
+                count(),
+                MoveObjects{
+                    v, particles(), grips_.data(), keys_.data(), bodies, dragged, {given_.data()}});
         placeSurface();
     }
+    // What that solid gave to them.
+    SumStops stops() { return {particles(), {given_.data()}}; }
     // From `time` on; null: bonds and grips again.
     void drive(ObjectDriver* driver, double time, Vec3 origin) {
         driver_ = driver, origin_ = toDouble(origin);
@@ -317,7 +323,8 @@ private:
            arrival_ = 0;  // s: when it was asked last, and when particles are to be where it said
     double drivenSpeed_ = 0;  // m/s, the most on the way there
     Vec3d origin_;            // m, the domain's lower corner
-    Buffer<real, Device> target_{device_}, impulse_{device_}, press_{device_}, pressedBy_{device_};
+    Buffer<real, Device> target_{device_}, impulse_{device_}, press_{device_}, pressedBy_{device_},
+        given_{device_};
     Buffer<real, Device> position_{device_}, velocity_{device_}, acceleration_{device_},
         home_{device_}, mass_{device_}, radius_{device_}, torn_{device_};
     Buffer<int, Device> object_{device_}, grip_{device_}, firstBond_{device_}, slot_{device_};

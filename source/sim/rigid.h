@@ -48,6 +48,16 @@ struct PressureAround {
     }
 };
 
+// What a solid that the mouse drags gives to the objects' particles that it stops in a step, kg
+// m/s, and their mass, kg.
+struct Stops {
+    double momentum[3] = {0, 0, 0}, mass = 0;
+    HD_OUT void add(const Stops& o) {
+        for (int k = 0; k < 3; ++k) momentum[k] += o.momentum[k];
+        mass += o.mass;
+    }
+};
+
 // The quaternion of a small turn, radians, after another one; of length 1.
 HD inline void turnBy(double (&q)[4], Vec3d angle) {
     const double size = sqrt(dot(angle, angle)), half = 0.5 * size,

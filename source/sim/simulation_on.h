@@ -89,7 +89,7 @@ public:
     void hold(const Hold& h) override {
         CHECK(h.solid < solids_.count());
         if (h.solid >= 0) letSolidsMove();
-        if (h.solid != hold_.solid) floating_.letGo();
+        if (h.solid != hold_.solid) floating_.letGo(), floating_.takeInHand(scene_, h.solid);
         hold_ = {h.solid, h.target - scene_.domain.min};
         refresh(scene_);
     }
@@ -411,7 +411,11 @@ private:
             floating_.addTouches(scene_, objects_.count(),
                                  [&](int solid) { return objects_.pressesOn(v, solid); });
     }
-    void moveObjects() { objects_.move(view(), whatFloats()); }
+    void moveObjects() {
+        objects_.move(view(), whatFloats(), hold_.solid);
+        if (hold_.solid >= 0 && !objects_.isDriven())
+            floating_.feelStops(objects_.count(), objects_.stops());
+    }
     void findSolidForces() {
         const View v = view();
         findAllLoads(v);

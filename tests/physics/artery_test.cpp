@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -86,6 +87,35 @@ TEST(Artery, NobodyLeavesThroughTheWall) {
             EXPECT_EQ(escaped, 0) << ratio << " " << influence;
             EXPECT_GT(farEnd(), before + 0.01) << ratio << " " << influence;
         }
+}
+
+// The mouse wants a plate on the other side of the tube; its hand is not strong enough to press the
+// fluid through the wall.
+TEST(Artery, HoldsWhenAPlateIsDraggedIntoIt) {
+    constexpr int plate = 2;
+    Scene scene = artery();
+    scene.objects[0].spacing = 2 * scene.simulation.spacing;
+    for (Solid& solid : scene.solids) solid.keyframes.clear();
+    auto simulation = makeSimulation(scene);
+    const Rings rings(sampleObjects(scene));
+    const Vec3 middle = 0.5f * (scene.solids[plate].min + scene.solids[plate].max);
+    simulation->hold({plate, middle + Vec3{0, 0, 0.06f}});
+    double fastest = 0;
+    for (double time = 0.02; time < 0.25; time += 0.02) {
+        runUntil(*simulation, time);
+        fastest = std::max(fastest, simulation->measure().maxSpeed);
+    }
+    const std::vector<Vec3> places = simulation->state().objects.positions;
+    int escaped = 0;
+    for (const Particle& p : simulation->particles()) escaped += !rings.inside(places, p.position);
+    const Vec3d at = simulation->measure().solids[plate].position;
+    const double moved = length(at - toDouble(middle));
+    std::printf("%d of %d escaped, fastest %.2f m/s, the plate moved %.1f mm\n", escaped,
+                simulation->fluidCount(), fastest, 1e3 * moved);
+    EXPECT_EQ(escaped, 0);
+    EXPECT_LT(fastest, 2);
+    EXPECT_GT(moved, 0.002);
+    EXPECT_LT(moved, 0.03);
 }
 
 TEST(Artery, BleedsThroughTheSlitOnly) {
