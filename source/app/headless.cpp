@@ -329,9 +329,12 @@ private:
     }
 
     void addRow() {
-        series_->add(
-            now_, simulation_->times(),
-            probes_.any() ? probes_.read(simulation_->particles()) : std::vector<double>());
+        std::vector<double> readings;
+        if (probes_.any())
+            readings = probes_.read(simulation_->particles(), probes_.looksPastSolids()
+                                                                  ? simulation_->solidPoses()
+                                                                  : std::vector<SolidPose>());
+        series_->add(now_, simulation_->times(), readings);
         simulation_->resetTimes();
     }
 

@@ -111,11 +111,11 @@ int PointsNear::cellOf(Vec3d x) const {
 }
 
 std::vector<Fields> interpolate(const std::vector<Particle>& particles, const PointsNear& points,
-                                Order order) {
+                                Order order, const Sees& sees) {
     std::vector<Equations> equations(points.points());
     std::vector<Fields> out(points.points());
     for (const Particle& p : particles)
-        points.visit(p.position, [&](int point, Vec3d r, double q) {
+        points.visit(p.position, sees, [&](int point, Vec3d r, double q) {
             ++out[size_t(point)].neighbours;
             const double basis[N] = {1, r.x, r.y, r.z};
             const double values[Sides] = {p.velocity.x, p.velocity.y, p.velocity.z, p.pressure,

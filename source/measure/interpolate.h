@@ -2,6 +2,7 @@
 // Fields between the particles.
 #include "sim/simulation.h"
 
+#include <functional>
 #include <vector>
 
 namespace spindrift {
@@ -19,6 +20,9 @@ struct Surroundings {
     Vec3d low, high;  // m, world coordinates
     Beyond beyond[3] = {Nothing, Nothing, Nothing};
 };
+
+// Whether a particle is seen from a point, or from an image of one; all are where nobody asks.
+using Sees = std::function<bool(Vec3d particle, Vec3d from)>;
 
 // Beside which points a particle lies: cells as long as a radius know the points that a particle in
 // them may be nearer to than that. Made once for points that stay; looking one particle up costs a
@@ -38,6 +42,12 @@ public:
             const double q = length(r);
             if (q < 1) f(site.point, r, q);
         }
+    }
+    // The same for those that see it.
+    template <class F> void visit(Vec3d x, const Sees& sees, const F& f) const {
+        visit(x, [&](int point, Vec3d r, double q) {
+            if (!sees || sees(x, x - radius_ * r)) f(point, r, q);
+        });
     }
     size_t points() const { return points_; }
 
@@ -63,7 +73,8 @@ private:
 // first order, exact for linear fields; with too few neighbours for a slope as Mean. Mean: their
 // weighted mean (Shepard), never beyond their values: for spray. Without neighbours zeros. Nothing
 // is mirrored at walls.
-std::vector<Fields> interpolate(const std::vector<Particle>&, const PointsNear&, Order);
+std::vector<Fields> interpolate(const std::vector<Particle>&, const PointsNear&, Order,
+                                const Sees& = {});
 std::vector<Fields> interpolate(const std::vector<Particle>&, const std::vector<Vec3d>& points,
                                 double radius, Order = Order::Linear);
 

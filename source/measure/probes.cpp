@@ -1,7 +1,7 @@
 #include "measure/probes.h"
 
 #include "core/error.h"
-#include "scene/convex.h"
+#include "scene/thin_solid.h"
 
 #include <fmt/format.h>
 
@@ -88,6 +88,22 @@ std::vector<Vec3d> pointsOf(const Scene& scene, const Probe& probe) {
     return points;
 }
 
+// m, 0 along axes that are not periodic.
+Vec3d periodOf(const Scene& scene) {
+    Vec3d period{0, 0, 0};
+    for (int k = 0; k < scene.simulation.dimensions; ++k)
+        if (scene.domain.periodic(k)) period[k] = scene.domain.size()[k];
+    return period;
+}
+Vec3d nearestArm(Vec3d arm, Vec3d period) {
+    for (int k = 0; k < 3; ++k)
+        if (period[k] > 0) arm[k] = std::remainder(arm[k], period[k]);
+    return arm;
+}
+Vec3d inAxes(const SolidPose& pose, Vec3d a) {
+    return {dot(a, pose.axis[0]), dot(a, pose.axis[1]), dot(a, pose.axis[2])};
+}
+
 // Solids where they are now.
 class SolidsNow {
 public:
@@ -106,11 +122,8 @@ public:
 
 private:
     Vec3d ownPlace(Vec3d point, const SolidPose& pose) const {
-        Vec3d arm = point - toDouble(scene_.domain.min) - pose.middle;
-        const Vec3d size = scene_.domain.size();
-        for (int k = 0; k < scene_.simulation.dimensions; ++k)
-            if (scene_.domain.periodic(k)) arm[k] = std::remainder(arm[k], size[k]);
-        return {dot(arm, pose.axis[0]), dot(arm, pose.axis[1]), dot(arm, pose.axis[2])};
+        return inAxes(
+            pose, nearestArm(point - toDouble(scene_.domain.min) - pose.middle, periodOf(scene_)));
     }
 
     const Scene& scene_;
@@ -138,7 +151,10 @@ Fields mean(const Fields* f, size_t count) {
 
 }  // namespace
 
-Probes::Probes(const Scene& scene) {
+Probes::Probes(const Scene& scene) : low_(toDouble(scene.domain.min)), period_(periodOf(scene)) {
+    for (size_t s = 0; s < scene.solids.size() && !scene.output.probes.empty(); ++s)
+        if (const double thickness = thinness(scene, scene.solids[s]); thickness > 0)
+            thin_.push_back({s, convexOf(scene.solids[s], scene.simulation.dimensions), thickness});
     for (const Probe& probe : scene.output.probes) {
         switch (probe.kind) {
             case ProbeKind::Point:
@@ -187,10 +203,24 @@ void Probes::addGauge(const Scene& scene, const Probe& probe) {
                        (high - low) / double(points.size() - 1), R, volume * norm});
 }
 
-double Probes::heightOf(const Gauge& gauge, const std::vector<Particle>& particles) {
+Sees Probes::sightPast(const std::vector<SolidPose>& poses) const {
+    if (thin_.empty() || poses.empty()) return {};
+    return [this, poses](Vec3d particle, Vec3d from) {
+        const Vec3d half = 0.5 * (particle - from), middle = particle - half - low_;
+        return std::none_of(thin_.begin(), thin_.end(), [&](const ThinSolid& solid) {
+            const SolidPose& pose = poses[solid.index];
+            const Vec3d arm = nearestArm(middle - pose.middle, period_);
+            return separates(solid.shape, solid.thickness, inAxes(pose, arm - half),
+                             inAxes(pose, arm + half));
+        });
+    };
+}
+
+double Probes::heightOf(const Gauge& gauge, const std::vector<Particle>& particles,
+                        const Sees& sees) {
     std::vector<double> filled(gauge.near.points());
     for (const Particle& p : particles)
-        gauge.near.visit(p.position, [&](int point, Vec3d, double q) {
+        gauge.near.visit(p.position, sees, [&](int point, Vec3d, double q) {
             filled[size_t(point)] += gauge.share * wendland(q);
         });
     // Where the share crosses a half, on a straight line between two samples.
@@ -218,17 +248,20 @@ size_t Probes::column(const std::string& name) const {
     return size_t(at - columns_.begin());
 }
 
-std::vector<double> Probes::read(const std::vector<Particle>& particles) const {
+std::vector<double> Probes::read(const std::vector<Particle>& particles,
+                                 const std::vector<SolidPose>& solids) const {
+    const Sees sees = sightPast(solids);
     std::vector<double> values;
     values.reserve(columns_.size());
     for (const Reader& reader : readers_) {
         if (reader.kind == ProbeKind::Front) {
             values.push_back(frontOf(particles, Axis(reader.index)));
         } else if (reader.kind == ProbeKind::Height) {
-            values.push_back(heightOf(gauges_[reader.index], particles));
+            values.push_back(heightOf(gauges_[reader.index], particles, sees));
         } else {
             const Fielded& probe = fielded_[reader.index];
-            const std::vector<Fields> fields = interpolate(particles, probe.near, probe.order);
+            const std::vector<Fields> fields =
+                interpolate(particles, probe.near, probe.order, sees);
             for (size_t i = 0; i < fields.size(); i += probe.perReading) {
                 const Fields f = mean(&fields[i], probe.perReading);
                 for (double value :

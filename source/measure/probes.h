@@ -2,6 +2,7 @@
 // Gauges in the fluid: what a scene's probes read.
 #include "measure/interpolate.h"
 #include "measure/time_series.h"
+#include "scene/convex.h"
 
 #include <string>
 #include <vector>
@@ -30,8 +31,11 @@ public:
     const std::vector<Column>& columns() const { return columns_; }
     // The number of a column. Throws Error (Scene) when there is none of this name.
     size_t column(const std::string& name) const;
-    // One reading for each column.
-    std::vector<double> read(const std::vector<Particle>&) const;
+    // One reading for each column. Thin solids, where they are now, hide what is behind them;
+    // without their poses they hide nothing.
+    std::vector<double> read(const std::vector<Particle>&,
+                             const std::vector<SolidPose>& solids = {}) const;
+    bool looksPastSolids() const { return !thin_.empty(); }
     // One line about those that solids are over where the run stands, "" when there are none:
     // points inside of one read nothing, or what is on its other side. A gauge through a solid
     // counts when it finds no water: over a beach or a block under water it is where it should be.
@@ -55,8 +59,16 @@ private:
 
     void addFielded(const Scene&, const Probe&);
     void addGauge(const Scene&, const Probe&);
-    static double heightOf(const Gauge&, const std::vector<Particle>&);
+    static double heightOf(const Gauge&, const std::vector<Particle>&, const Sees& = {});
+    Sees sightPast(const std::vector<SolidPose>&) const;
 
+    struct ThinSolid {
+        size_t index;
+        Convex shape;
+        double thickness;  // m
+    };
+    std::vector<ThinSolid> thin_;
+    Vec3d low_, period_;  // m, of the domain; 0 along axes that are not periodic
     std::vector<Column> columns_;
     std::vector<Reader> readers_;
     std::vector<Fielded> fielded_;

@@ -2,6 +2,7 @@
 
 #include "scene/convex.h"
 #include "scene/sample_solid.h"
+#include "scene/thin_solid.h"
 
 #include <fmt/format.h>
 
@@ -62,9 +63,11 @@ std::optional<double> thicknessOf(const Scene& scene, const Solid& solid, double
     return least;
 }
 
-// Fluid stands half a spacing off each side.
+// Fluid stands half a spacing off each side. (Plates, shells and the like separate it however thin
+// they are.)
 void addThickness(const Scene& scene, size_t index, std::vector<std::string>& out) {
     const double dx = scene.simulation.spacing, held = supportRadius(scene) - dx;
+    if (thinness(scene, scene.solids[index]) > 0) return;
     const auto thickness = thicknessOf(scene, scene.solids[index], held);
     if (!thickness || *thickness >= held - Rounding * dx) return;
     out.push_back(

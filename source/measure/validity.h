@@ -17,8 +17,7 @@ struct Remark {
 std::string keyOf(const std::string& remark);
 
 // Of a scene, before it runs: a support, a body of fluid or a gap of fewer than two spacings; a
-// solid so thin that fluid on its two sides is within a support radius, so that each feels the
-// other.
+// rod so thin that fluid on its two sides is within a support radius, so that each feels the other.
 std::vector<std::string> remarksOn(const Scene&);
 
 // Watches one run: the scene's remarks, and those of what is measured. A weakly compressible fluid

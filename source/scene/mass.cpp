@@ -2,6 +2,7 @@
 
 #include "scene/convex.h"
 
+#include <cmath>
 #include <numbers>
 
 namespace spindrift {
@@ -71,6 +72,18 @@ static Vec3d normalsNear(const Convex& shape, Vec3d p, double near) {
     return sum;
 }
 
+// The same of a particle that belongs to one face of a thin solid, whichever else is near.
+static Vec3d normalsNear(const Convex& shape, Vec3d p, double near, Vec3d face) {
+    if (length(face) > near) return {};
+    const Vec3d own = -1.0 * normalized(face);
+    Vec3d sum = own;
+    for (int k = 0; k < shape.planes && !shape.mesh; ++k)
+        if (shape.offset[k] - dot(shape.normal[k], p) <= near &&
+            std::abs(dot(shape.normal[k], own)) < 0.9)
+            sum = sum + shape.normal[k];
+    return sum;
+}
+
 // With a = w (n - mean of n) the areas close. With G = sum x (x) a they make the force -G^T g of a
 // pressure g.x: multiplied by V G^-T it is -V g.
 std::vector<Vec3d> surfaceAreas(const Scene& scene, const Solid& solid, const SolidSample& sample) {
@@ -84,7 +97,10 @@ std::vector<Vec3d> surfaceAreas(const Scene& scene, const Solid& solid, const So
         return toDouble(sample.positions[i] + scene.domain.min) - shape.middle;
     };
     for (size_t i = 0; i < areas.size(); ++i) {
-        const Vec3d normal = normalsNear(shape, armOf(i), outermost);
+        if (!sample.beyond.empty() && sample.beyond[i]) continue;
+        const Vec3d normal = sample.faces.empty() ? normalsNear(shape, armOf(i), outermost)
+                                                  : normalsNear(shape, armOf(i), outermost,
+                                                                toDouble(sample.faces[i]));
         if (normal == Vec3d{}) continue;
         weights[i] = sample.volumes[i];
         areas[i] = weights[i] * normal;

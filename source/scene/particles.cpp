@@ -10,6 +10,7 @@
 #include "scene/sample_object.h"
 #include "scene/sample_solid.h"
 #include "scene/start_fields.h"
+#include "scene/thin_solid.h"
 
 #include <algorithm>
 #include <cmath>
@@ -198,7 +199,7 @@ Placement placeParticles(const Scene& scene) {
     if (!isMixture(scene)) out.bodies = {};
     if (!out.densities.empty()) out.densities.resize(out.positions.size());
     for (const Solid& solid : scene.solids) {
-        const std::vector<Vec3> points = sampleSolid(scene, solid).positions;
+        const std::vector<Vec3> points = boundaryOf(scene, solid).positions;
         out.walls.insert(out.walls.end(), points.begin(), points.end());
         out.solidSizes.push_back(int(points.size()));
     }
@@ -291,9 +292,21 @@ double soundSpeed(const Scene& s, const FluidExtent& fluid) {
 }
 
 // Whole shells of the bounding box.
+static double mostInThinSolid(const Scene& scene, const Solid& solid) {
+    const int layers = boundaryLayers(scene);
+    const double dx = scene.simulation.spacing;
+    double all = 2;
+    for (int k = 0; k < scene.simulation.dimensions; ++k)
+        all *= std::ceil(2 * halfExtent(solid)[k] / dx) + 2 * layers + 3;
+    if (solid.shape != Shape::Mesh) return all;
+    const double apart = dx / double(solid.scale);
+    return std::min(all, 4 * (layers + 2) * (readMesh(solid.path)->area() / (apart * apart) + 100));
+}
+
 static double mostInSolid(const Scene& scene, const Solid& solid) {
     double all = 1, inner = 1;
     if (solid.shape == Shape::Plane) return mostOfPlane(scene);
+    if (thinness(scene, solid) > 0) return mostInThinSolid(scene, solid);
     for (int k = 0; k < scene.simulation.dimensions; ++k) {
         const double n = std::ceil(2 * halfExtent(solid)[k] / scene.simulation.spacing) + 1;
         all *= n, inner *= std::max(0.0, n - 2 * boundaryLayers(scene) - 2);

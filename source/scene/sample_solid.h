@@ -17,6 +17,9 @@ int boundaryLayers(const Scene&);
 struct SolidSample {
     std::vector<Vec3> positions;
     std::vector<float> volumes;
+    // Of thin solids only (thin_solid.h).
+    std::vector<Vec3> faces;
+    std::vector<char> beyond;
 };
 SolidSample sampleSolid(const Scene&, const Solid&);
 

@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "core/pass_time.h"
 #include "device/omp.h"
-#include "sim/view.h"
+#include "sim/screens.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,9 +15,18 @@
 
 namespace spindrift::LANES {
 
+// Whether thin solids may be between particles of a cluster and others: for each solid which planes
+// the whole cluster is in front of, or that it is out of reach, and whether boundary particles of
+// it are any thin solid's.
+namespace side {
+enum : uint8_t { Planes = 63, Owned = 64, Far = 128 };
+}
+
 // Bounding boxes of a set's clusters, empty slots left out; component by component for SIMD tests.
 struct ClusterBoxes {
     std::vector<float> low[3], high[3];
+    std::vector<uint8_t> sides;  // cluster by cluster, of each thin solid; empty: there is none
+    int screens = 0;
 
     void compute(Omp& device, const Particles& p) {
         const int clusters = p.slots / clusterSize;
@@ -28,6 +37,40 @@ struct ClusterBoxes {
         device.forRanges(clusters, 256, [&](int begin, int end) {
             for (int c = begin; c < end; ++c) computeOne(p, c);
         });
+    }
+    void findSides(Omp& device, const Particles& p, const Screens* all, float reach, bool walls) {
+        const int clusters = p.slots / clusterSize;
+        screens = all->count;
+        sides.resize(size_t(clusters) * size_t(screens));
+        device.forRanges(clusters, 256, [&](int begin, int end) {
+            for (int c = begin; c < end; ++c)
+                for (int k = 0; k < screens; ++k)
+                    sides[size_t(c) * size_t(screens) + size_t(k)] =
+                        sideOf(p, c, *all, all->solids[all->thin[k]], reach, walls);
+        });
+    }
+    static uint8_t sideOf(const Particles& p, int cluster, const Screens& all, const SolidState& s,
+                          float reach, bool walls) {
+        uint8_t side = 0;
+        float least[Convex::mostPlanes];
+        std::fill_n(least, s.planes, 3e38f);
+        const Vector<real> middle = intoDomain(all.c, s.middle);
+        for (int i = cluster * clusterSize; i < (cluster + 1) * clusterSize; ++i) {
+            if (p.id[i] < 0) continue;
+            const int solid = walls ? all.solidOf[p.id[i] - all.firstId] : -1;
+            if (solid >= 0 && all.solids[solid].grace > 0) side = side::Owned;
+            const Vector<real> arm = imageOf(all.c, load(p.position, i) - middle);
+            for (int k = 0; k < s.planes; ++k)
+                least[k] = std::min(least[k],
+                                    dot(arm, turned(s, s.normal[k])) - s.offset[k] - s.beyond[k]);
+        }
+        // Of a solid that is periodic another image might be on the way.
+        for (int k = 0; k < s.planes; ++k)
+            side |= least[k] > reach ? side::Far : least[k] > 0 && !all.c.periodic ? 1 << k : 0;
+        return side;
+    }
+    const uint8_t* sidesOf(uint32_t cluster) const {
+        return sides.data() + size_t(cluster) * size_t(screens);
     }
     void computeOne(const Particles& p, int cluster) {
         const float* x = p.position.data + vectorOffset(cluster * clusterSize, 0);
@@ -42,6 +85,39 @@ struct ClusterBoxes {
             low[k][cluster] = lo;
             high[k][cluster] = hi;
         }
+    }
+};
+
+// What lists of one set in another have to know of thin solids; screens: null where there is none.
+struct Sight {
+    const Screens* screens = nullptr;
+    Between between = Between::Nobody;
+    Particles own{}, other{};
+
+    // Whether no solid can be between particles of two clusters.
+    bool isFree(const uint8_t* a, const uint8_t* b) const {
+        for (int k = 0; k < screens->count; ++k) {
+            if ((a[k] | b[k]) & side::Owned) return false;
+            if (!(a[k] & b[k] & side::Planes) && !((a[k] | b[k]) & side::Far)) return false;
+        }
+        return true;
+    }
+    // Which pairs see each other, as in ClusterList; empty slots and who is out of reach count as
+    // if they did, but if there is nobody else nobody does.
+    uint16_t pairsOf(int c, int j, float reach) const {
+        unsigned seen = 0;
+        bool any = false, hidden = false;
+        const int* wallId = between == Between::WallsAndFluid ? own.id : other.id;
+        for (int l = 0; l < clusterSize * clusterSize; ++l) {
+            const int a = c * clusterSize + l / clusterSize, b = j * clusterSize + l % clusterSize;
+            const Vector<real> x = load(own.position, a),
+                               r = imageOf(screens->c, x - load(other.position, b));
+            const bool counts = own.id[a] >= 0 && other.id[b] >= 0 && dot(r, r) < reach * reach;
+            const bool isSeen = !counts || sees(*screens, wallId, between, a, b, x, r);
+            any = any || (counts && isSeen), hidden = hidden || !isSeen;
+            seen |= unsigned(isSeen) << l;
+        }
+        return hidden && !any ? 0 : uint16_t(seen);
     }
 };
 
@@ -82,6 +158,7 @@ public:
         piece_ = std::max(64, (int(clusters) + 255) / 256);
         entries_.resize((clusters + piece_ - 1) / piece_);
         pruned_.resize(entries_.size());
+        seen_.resize(entries_.size()), prunedSeen_.resize(entries_.size());
         ends_.resize(entries_.size());
         for (size_t p = 0; p < ends_.size(); ++p)
             ends_[p] = uint32_t(std::min(clusters, (p + 1) * piece_));
@@ -91,7 +168,7 @@ public:
     // forgotten.
     void build(Omp& device, const Grid& grid, float reach, const ClusterBoxes& own,
                const uint8_t* due, const ClusterBoxes& other, const int* otherCellStart,
-               bool once = false) {
+               bool once = false, const Sight& sight = {}) {
         if (complete_ || otherCellStart[cellCount(grid)] == 0) return;
         complete_ = !due;
         const Search search{grid,
@@ -101,6 +178,7 @@ public:
                             other,
                             otherCellStart,
                             once,
+                            sight,
                             {periodOf(grid.wraps.x, grid.cells.x, grid.perMetre.x),
                              periodOf(grid.wraps.y, grid.cells.y, grid.perMetre.y),
                              periodOf(grid.wraps.z, grid.cells.z, grid.perMetre.z)}};
@@ -108,8 +186,7 @@ public:
             const int piece = begin / piece_;
             bool misses = false;
             for (int c = begin; c < end && !misses; ++c) misses = search.wants(c) && !listed_[c];
-            if (misses)
-                ends_[piece] = buildPiece(begin, end, search, entries_[piece], pruned_[piece]);
+            if (misses) ends_[piece] = buildPiece(begin, end, search, piece);
         });
     }
 
@@ -122,6 +199,7 @@ private:
         const ClusterBoxes& other;
         const int* cellStart;
         bool once;
+        const Sight& sight;
         float period[3];  // m, 0 where there is none
         bool wants(int cluster) const { return !due || due[cluster] > NotDue; }
     };
@@ -130,8 +208,10 @@ private:
     }
     static size_t cellCount(const Grid& g) { return size_t(g.cells.x) * g.cells.y * g.cells.z; }
 
-    uint32_t buildPiece(int begin, int end, const Search& s, std::vector<uint32_t>& entries,
-                        std::vector<uint32_t>& pruned) {
+    uint32_t buildPiece(int begin, int end, const Search& s, int piece) {
+        std::vector<uint32_t>&entries = entries_[piece], &pruned = pruned_[piece];
+        std::vector<uint16_t>&seen = seen_[piece], &prunedSeen = prunedSeen_[piece];
+        seen.clear();
         size_t used = 0;
         uint32_t farthest = uint32_t(end);
         for (int first = begin, last; first < end; first = last) {
@@ -151,17 +231,46 @@ private:
                     used += keepNear(s, c, from, ranges.last[r], entries.data() + used);
                     if (used > before) farthest = std::max(farthest, entries[used - 1] + 1);
                 }
-                lists_[c].count = uint32_t(used - before);
+                lists_[c].count = lists_[c].clear = uint32_t(used - before);
+                if (s.sight.screens) {
+                    hide(s, c, entries.data() + before, seen);
+                    used = before + lists_[c].count;
+                }
                 listed_[c] = true;
             }
         }
         // The arena may have moved while it grew: only now are addresses known.
-        pruned.resize(entries.size());
-        for (size_t c = size_t(begin), next = 0; c < size_t(end); next += lists_[c++].count) {
-            lists_[c].clusters = entries.data() + next;
-            lists_[c].pruned = pruned.data() + next;
+        pruned.resize(entries.size()), prunedSeen.resize(seen.size() + 1);
+        size_t next = 0, nextSeen = 0;
+        for (int c = begin; c < end; ++c) {
+            ClusterList& list = lists_[c];
+            list.clusters = entries.data() + next, list.pruned = pruned.data() + next;
+            list.seen = seen.data() + nextSeen, list.prunedSeen = prunedSeen.data() + nextSeen;
+            next += list.count, nextSeen += list.count - list.clear;
         }
         return farthest;
+    }
+
+    // Of cluster c's entries leaves out those whom thin solids hide from it, and puts those last of
+    // whom they hide a part.
+    void hide(const Search& s, int c, uint32_t* entries, std::vector<uint16_t>& seen) {
+        ClusterList& list = lists_[c];
+        const uint8_t* own = s.own.sidesOf(uint32_t(c));
+        std::vector<uint32_t> partly;
+        uint32_t clear = 0;
+        for (uint32_t k = 0; k < list.count; ++k) {
+            const uint32_t j = entries[k];
+            const uint16_t pairs = s.sight.isFree(own, s.other.sidesOf(j))
+                                       ? allSeen
+                                       : s.sight.pairsOf(c, int(j), s.reach);
+            if (pairs == allSeen)
+                entries[clear++] = j;
+            else if (pairs != 0)
+                partly.push_back(j), seen.push_back(pairs);
+        }
+        std::copy(partly.begin(), partly.end(), entries + clear);
+        list.clear = clear, list.count = clear + uint32_t(partly.size());
+        if (s.once && !s.sight.isFree(own, own)) list.within = s.sight.pairsOf(c, c, s.reach);
     }
 
     // Clusters whose rows are searched together: a few that lie in one row.
@@ -296,6 +405,7 @@ private:
     std::vector<ClusterList> lists_;
     std::vector<std::vector<uint32_t>> entries_,
         pruned_;  // one arena a piece, kept from step to step
+    std::vector<std::vector<uint16_t>> seen_, prunedSeen_;
 };
 
 }  // namespace spindrift::LANES

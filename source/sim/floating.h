@@ -53,11 +53,20 @@ struct SumTouches {
         const int owner = v.walls.id[i] < 0 ? -1 : home.solidOf(v.walls.id[i]);
         if (owner < 0) return;
         const SolidState& own = v.solids[owner];
-        Vector<real> normal{0, 0, 0};
-        const real depth =
-            -surface(own, load(home.position, v.walls.id[i] - home.firstId) - own.home, normal);
+        const int k = v.walls.id[i] - home.firstId;
+        Vector<real> at = load(home.position, k) - own.home, normal{0, 0, 0};
+        real depth = -surface(own, at, normal);
+        Vector<real> place = load(v.walls.position, i);
+        if (own.grace > 0) {  // each face has its own, and has them on itself where it is too thin
+            const Vector<real> face = load(home.face, k);
+            if (dot(face, face) > bodies[owner].deepestBall * bodies[owner].deepestBall) return;
+            if (depth < 0)
+                depth = -surface(own, at - face, normal), place = place - turned(own, face);
+            if (depth < real(-0.1) * bodies[owner].deepestBall) return;
+            depth = max(depth, real(0));
+        }
         if (depth > bodies[owner].deepestBall) return;
-        const Ball ball{load(v.walls.position, i), load(v.walls.ownVelocity, i), depth};
+        const Ball ball{place, load(v.walls.ownVelocity, i), depth};
         Vector<real> force{0, 0, 0};
         if (owner != solid)
             force = real(-1) * pressOn(ball, owner, solid);
@@ -374,9 +383,15 @@ private:
     static double ballsOfAFace(const Scene& scene, const Solid& solid) {
         const Convex shape = convexOf(solid, scene.simulation.dimensions);
         double outermost = 0;
-        for (const Vec3& p : sampleSolid(scene, solid).positions)
-            outermost += -shape.nearest(toDouble(p + scene.domain.min) - shape.middle).distance <=
-                         double(deepestBall(scene));
+        const SolidSample sample = boundaryOf(scene, solid);
+        for (size_t i = 0; i < sample.positions.size(); ++i) {
+            const Vec3d at = toDouble(sample.positions[i] + scene.domain.min) - shape.middle;
+            if (sample.faces.empty())
+                outermost += -shape.nearest(at).distance <= double(deepestBall(scene));
+            else
+                outermost += length(toDouble(sample.faces[i])) <= double(deepestBall(scene)) &&
+                             shape.nearest(at - toDouble(sample.faces[i])).distance < 1e-6;
+        }
         return std::max(1.0, outermost / (2 * scene.simulation.dimensions));
     }
     static SolidMotion motionAtHome(const Scene& scene, const Solid& solid, const RigidBody& body) {

@@ -5,7 +5,7 @@
 // but once a step are not pruned, `All`.
 #pragma once
 
-#include "sim/view.h"
+#include "sim/screens.h"
 
 namespace spindrift::LANES {
 
@@ -16,24 +16,12 @@ template <class R> struct Pair {
     R inverseDistance2;  // 1 / (distance^2 + eta^2), finite everywhere
 };
 
-// Of all images of a neighbour the nearest one. Empty slots, which lie many periods away, stay far.
-template <class R> HD inline R nearestImage(R r, real period, real inversePeriod) {
-    const R periods = min(max(r * R(inversePeriod), R(-1)), R(1));
-    return negMulAdd(nearestInteger(periods), R(period), r);
-}
-
-template <class R> HD inline Vector<R> imageOf(const Constants& c, Vector<R> r) {
-    if (c.periodic)
-        r = {nearestImage(r.x, c.period.x, c.inversePeriod.x),
-             nearestImage(r.y, c.period.y, c.inversePeriod.y),
-             nearestImage(r.z, c.period.z, c.inversePeriod.z)};
-    return r;
-}
-
-template <class R> HD inline Pair<R> makePair(const Constants& c, Vector<R> xi, Vector<R> xj) {
+// `apart`: 0, or enough to put out of reach whoever does not see each other.
+template <class R>
+HD inline Pair<R> makePair(const Constants& c, Vector<R> xi, Vector<R> xj, R apart) {
     const Vector<R> r = imageOf(c, xi - xj);
     const R d2 = dot(r, r);
-    return {r, d2, squareRoot(d2 * R(c.inverseSupport2)), reciprocal(d2 + R(c.eta2))};
+    return {r, d2, squareRoot(mulAdd(d2, R(c.inverseSupport2), apart)), reciprocal(d2 + R(c.eta2))};
 }
 
 enum class Lists { All, Prune, Pruned };
@@ -42,26 +30,45 @@ enum class Lists { All, Prune, Pruned };
 // A group narrower than a cluster sees but a part of the hits, so that it can't prune.
 inline constexpr bool prunes = Group::size == clusterSize;
 
-// With `due` only clusters of which it says at least `from`.
+// Of the pairs of the particles i with a cluster those that are hidden.
+HD inline Wide apartUnless(uint16_t seen, Group i) {
+    const unsigned lanes = unsigned(seen) >> (clusterSize * (i.first % clusterSize));
+    const uint8_t bits[8] = {uint8_t(lanes & 255), uint8_t(lanes >> 8)};
+    return select(Wide::Mask{hn::LoadMaskBits(WideTag(), bits)}, Wide(0), Wide(4));
+}
+
+// With `due` only clusters of which it says at least `from`. The clusters of which all are seen
+// come first, in one stretch, then one by one those of which thin solids hide some.
 template <Lists lists, uint8_t from = Due, class F>
 HD inline void forNeighbours(const View& v, const Neighbourhood& near, Group i, Vector<Wide> xi,
                              const F& f, const uint8_t* due = nullptr) {
     ClusterList& list = near.lists[i.first / clusterSize];
     const bool pruned = prunes && lists == Lists::Pruned;
     const uint32_t* clusters = pruned ? list.pruned : list.clusters;
-    const uint32_t count = pruned ? list.prunedCount : list.count;
-    uint32_t kept = 0;
-    for (uint32_t k = 0; k < count; ++k) {
-        if (due && due[clusters[k]] < from) continue;
-        const Four j{int(clusters[k]) * clusterSize};
-        const Pair<Wide> pair = makePair(v.c, xi, load(near.position, j));
-        f(pair, j);
-        if constexpr (prunes && lists == Lists::Prune) {
-            list.pruned[kept] = clusters[k];
-            kept += any(pair.distance2 < Wide(v.c.support2));
+    const uint16_t* seen = pruned ? list.prunedSeen : list.seen;
+    const uint32_t count = pruned ? list.prunedCount : list.count,
+                   clear = pruned ? list.prunedClear : list.clear;
+    uint32_t kept = 0, keptClear = 0;
+    Wide apart = 0;
+    for (uint32_t k = 0, end = clear;;) {
+        for (; k < end; ++k) {
+            if (due && due[clusters[k]] < from) continue;
+            const Four j{int(clusters[k]) * clusterSize};
+            const Pair<Wide> pair = makePair(v.c, xi, load(near.position, j), apart);
+            f(pair, j);
+            if constexpr (prunes && lists == Lists::Prune) {
+                list.pruned[kept] = clusters[k];
+                kept += any(pair.distance2 < Wide(v.c.support2));
+            }
         }
+        if (k == clear) keptClear = kept;
+        if (k == count) break;
+        apart = apartUnless(seen[k - clear], i), end = k + 1;
+        if constexpr (prunes && lists == Lists::Prune)
+            list.prunedSeen[kept - keptClear] = seen[k - clear];
     }
-    if constexpr (prunes && lists == Lists::Prune) list.prunedCount = kept;
+    if constexpr (prunes && lists == Lists::Prune)
+        list.prunedCount = kept, list.prunedClear = keptClear;
 }
 #else
 // Distance from a coordinate, itself in row `own`, to a row; a bit less, as a particle on a face
@@ -75,8 +82,10 @@ HD inline real rowGap(real x, int own, int row, real low, real rowSize) {
 
 // Rows of cells within reach; of each row the stretch that the support sphere cuts out.
 template <Lists, class F> HD inline void forNeighbours(const View& v, const Neighbourhood& near,
-                                                       int, Vector<real> xi, const F& f) {
+                                                       int i, Vector<real> xi, const F& f) {
     const Grid& g = v.grid;
+    const bool screened =
+        v.screens && near.between != Between::Nobody && isBesideScreen(*v.screens, xi);
     const real R = v.c.support, rowSizeY = 1 / g.perMetre.y, rowSizeZ = 1 / g.perMetre.z;
     const int ownY = g.rowY(xi.y), y0 = g.rowY(xi.y - R), y1 = g.rowY(xi.y + R);
     const int ownZ = g.rowZ(xi.z), z0 = g.rowZ(xi.z - R), z1 = g.rowZ(xi.z + R);
@@ -88,13 +97,16 @@ template <Lists, class F> HD inline void forNeighbours(const View& v, const Neig
             if (left2 <= 0) continue;
             const real left = squareRoot(left2);
             const int* row = near.cellStart + g.row(y, z);
-            forStretches(g.cellX(xi.x - left), g.cellX(xi.x + left), g.cells.x,
-                         [&](int first, int last) {
-                             for (int j = row[first], end = row[last + 1]; j < end; ++j) {
-                                 const Pair<real> pair = makePair(v.c, xi, load(near.position, j));
-                                 if (pair.distance2 < v.c.support2) f(pair, j);
-                             }
-                         });
+            forStretches(
+                g.cellX(xi.x - left), g.cellX(xi.x + left), g.cells.x, [&](int first, int last) {
+                    for (int j = row[first], end = row[last + 1]; j < end; ++j) {
+                        const Pair<real> pair = makePair(v.c, xi, load(near.position, j), real(0));
+                        if (pair.distance2 < v.c.support2 &&
+                            !(screened &&
+                              !sees(*v.screens, v.walls.id, near.between, i, j, xi, pair.r)))
+                            f(pair, j);
+                    }
+                });
         }
     }
 }

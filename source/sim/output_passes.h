@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/vertex.h"
-#include "sim/view.h"
+#include "sim/solids.h"
 
 namespace spindrift::LANES {
 
@@ -60,16 +60,29 @@ template <class Value> struct WriteVertices {
 };
 
 // The same for the boundary particles with the first ids; 1 for those of solids, ids below
-// solidsEnd, 0 for the domain's walls.
+// solidsEnd, 0 for the domain's walls. What thin solids have beyond themselves is shown on them.
 struct WriteWallVertices {
     using Index = int;
-    Particles p;
+    View v;
+    WallsAtHome home;
     Vertex* out;
     int solidsEnd, end;
     HD void operator()(int i) const {
+        const Particles& p = v.walls;
         if (p.id[i] < 0 || p.id[i] >= end) return;
-        const Vector<real> x = load(p.position, i);
+        Vector<real> x = load(p.position, i);
+        const int solid = home.solidOf(p.id[i]);
+        if (solid >= 0 && v.solids[solid].grace > 0) x = onThin(v.solids[solid], p.id[i], x);
         out[p.id[i]] = {float(x.x), float(x.y), float(x.z), p.id[i] < solidsEnd ? 1.0f : 0.0f};
+    }
+    HD Vector<real> onThin(const SolidState& s, int id, Vector<real> x) const {
+        const Vector<real> at = load(home.position, id - home.firstId) - s.home;
+        Vector<real> n{0, 0, 0};
+        if (surface(s, at, n) <= 0) return x;
+        Vector<real> on = at - load(home.face, id - home.firstId);
+        for (int k = 0; k < s.planes; ++k)
+            on = subtractScaled(on, max(dot(s.normal[k], on) - s.offset[k], real(0)), s.normal[k]);
+        return x + turned(s, on - at);
     }
 };
 

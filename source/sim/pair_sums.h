@@ -96,7 +96,9 @@ private:
         const Vector<Wide> x = load(v.fluid.position, i);
         const auto own = pass.state(i);
         const Four same{i.first / clusterSize * clusterSize};
-        auto sum = pass.of(makePair(v.c, x, load(v.fluid.position, same)), own,
+        const uint16_t seen = v.fluidNearFluid.lists[i.first / clusterSize].within;
+        const Wide apart = seen == allSeen ? Wide(0) : apartUnless(seen, i);
+        auto sum = pass.of(makePair(v.c, x, load(v.fluid.position, same), apart), own,
                            pass.state(same));  // each gives itself to all four
         forNeighbours<Pass::lists, Pass::dueFrom>(
             v, v.fluidNearFluid, i, x,

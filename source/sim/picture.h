@@ -32,8 +32,8 @@ Range SimulationOn<Device>::writeVertices(Vertex* out, ColorBy by, int walls) {
     const View v = view();
     if (walls > 0)
         device_.forEach(v.walls.slots,
-                        WriteWallVertices{v.walls, out, fluidCount_ + solidParticleCount(),
-                                          fluidCount_ + walls});
+                        WriteWallVertices{v, solids_.home(), out,
+                                          fluidCount_ + solidParticleCount(), fluidCount_ + walls});
     if (objects_.count() > 0)
         objects_.writeVertices(out + fluidCount_ + walls, scene_.simulation.spacing);
     switch (by) {

@@ -239,6 +239,7 @@ private:
             floating_.setSprings(scene_, longestStep());
             makePlan<K>();
         });
+        if (solids_.anyThin()) solids_.screen(constants_);
         addBuffers();
         fluid_.stepLocally(hasLocalSteps());
         walls_.stepLocally(hasLocalSteps());
@@ -474,6 +475,7 @@ private:
             solids_.placeWalls(view());  // all but their places, which the sort took along
             wallBoxes_.compute(device_, walls_.view());
         }
+        if (solids_.anyThin()) findScreens();
         if (objects_.count() > 0) {
             objects_.sort(grid_);
             objects_.forgetLists(fluid_.view());
@@ -483,18 +485,28 @@ private:
         fluidNearWalls_.forget(walls_.view());
         travel_ = travelBefore_ = 0;
     }
+    // On which sides of thin solids clusters are.
+    void findScreens() {
+        solids_.meetWalls(constants_);
+        const float reach = supportRadius(scene_) + skin_;
+        boxes_.findSides(device_, fluid_.view(), solids_.screens(), reach, false);
+        wallBoxes_.findSides(device_, walls_.view(), solids_.screens(), reach, true);
+    }
     // Of those who are looked at now; forces on solids may be asked for at any time.
     void findNeighbours() {
         const View v = view();
         const float reach = supportRadius(scene_) + skin_;
         fluidNearFluid_.build(device_, grid_, reach, boxes_, v.fluid.due, boxes_,
-                              fluid_.cellStart(), pairsOnce());
+                              fluid_.cellStart(), pairsOnce(),
+                              {v.screens, Between::Fluid, v.fluid, v.fluid});
         wallsNearFluid_.build(device_, grid_, reach, boxes_, v.fluid.due, wallBoxes_,
-                              walls_.cellStart());
+                              walls_.cellStart(), false,
+                              {v.screens, Between::FluidAndWalls, v.fluid, v.walls});
         if (objects_.count() > 0) objects_.findNeighbours(grid_, skin_, boxes_, fluid_.cellStart());
         if (!wallsCarryPressure()) return;
         const uint8_t* due = solids_.count() > 0 ? nullptr : v.walls.due;
-        fluidNearWalls_.build(device_, grid_, reach, wallBoxes_, due, boxes_, fluid_.cellStart());
+        fluidNearWalls_.build(device_, grid_, reach, wallBoxes_, due, boxes_, fluid_.cellStart(),
+                              false, {v.screens, Between::WallsAndFluid, v.walls, v.fluid});
     }
     template <bool volume> void findExtremes() {
         device_.reduce(fluid_.slots(), FindExtremes<volume>{fluid_.view(), constants_.restDensity},
@@ -586,14 +598,17 @@ private:
                walls_.view(),
                solids_.data(),
                solids_.count(),
-               {fluidNearFluid_.data(), fluid_.cellStart(), fluid_.view().position},
-               {wallsNearFluid_.data(), walls_.cellStart(), walls_.view().position},
-               {fluidNearWalls_.data(), fluid_.cellStart(), fluid_.view().position},
+               {fluidNearFluid_.data(), fluid_.cellStart(), fluid_.view().position, Between::Fluid},
+               {wallsNearFluid_.data(), walls_.cellStart(), walls_.view().position,
+                Between::FluidAndWalls},
+               {fluidNearWalls_.data(), fluid_.cellStart(), fluid_.view().position,
+                Between::WallsAndFluid},
                {wallsNearWalls_.data(), walls_.cellStart(), walls_.view().position},
                grid_,
                constants_,
                clock_.data(),
-               localSteps_.view()};
+               localSteps_.view(),
+               solids_.screens()};
         if (allDue_) v.fluid.due = v.walls.due = nullptr;
         v.c.stirCenter = toVector(stir_.center - scene_.domain.min);
         v.c.stirVelocity = toVector(stir_.velocity);

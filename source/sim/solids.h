@@ -7,18 +7,12 @@
 #include "scene/lattice.h"
 #include "scene/mass.h"
 #include "scene/motion.h"
-#include "scene/sample_solid.h"
+#include "scene/thin_solid.h"
 #include "sim/neighbours.h"
 #include "sim/rigid.h"
 #include "sim/terms.h"
 
 namespace spindrift::LANES {
-
-// From a solid's own axes into space.
-template <class R> HD inline Vector<R> turned(const SolidState& s, Vector<R> a) {
-    auto wide = [](Vector<real> b) LANE_CALL { return Vector<R>{b.x, b.y, b.z}; };
-    return a.x * wide(s.axis[0]) + a.y * wide(s.axis[1]) + a.z * wide(s.axis[2]);
-}
 
 // Between keys [first, end): on straight lines, at rest before and after. m and radians, and those
 // per second.
@@ -121,54 +115,6 @@ struct MeasureTurn {
     }
 };
 
-// Convex::nearest, for lanes: signed distance of p from a solid's surface in its own axes, and the
-// outward normal there.
-template <class R> HD inline R nearest(const SolidState& s, Vector<R> p, Vector<R>& n) {
-    R most = real(-1e30);
-    auto take = [&](R distance, Vector<R> normal) LANE_CALL {
-        const auto nearer = distance > most;
-        n = {select(nearer, normal.x, n.x), select(nearer, normal.y, n.y),
-             select(nearer, normal.z, n.z)};
-        most = max(most, distance);
-    };
-    for (int k = 0; k < s.planes; ++k) {
-        const Vector<R> normal{s.normal[k].x, s.normal[k].y, s.normal[k].z};
-        take(dot(normal, p) - R(s.offset[k]), normal);
-    }
-    if (s.radius > 0) {
-        const Vector<R> d{R(s.across.x) * p.x, R(s.across.y) * p.y, R(s.across.z) * p.z};
-        const R far = squareRoot(max(dot(d, d), R(real(1e-30))));
-        take(far - R(s.radius), (R(1) / far) * d);
-    }
-    return most;
-}
-
-// The same for one particle and any solid: of a mesh trilinear between the nodes of its field.
-HD inline real surface(const SolidState& s, Vector<real> p, Vector<real>& n) {
-    if (!s.field) return nearest(s, p, n);
-    const Vector<real> at = s.nodesPerMetre * (p - s.fieldLow);
-    auto cell = [](real a, int nodes) LANE_CALL { return Grid::clamped(a, nodes - 1); };
-    auto share = [](real a, int cell)
-                     LANE_CALL { return min(max(a - real(cell), real(0)), real(1)); };
-    const int i = cell(at.x, s.nodes.x), j = cell(at.y, s.nodes.y), k = cell(at.z, s.nodes.z);
-    const real x = share(at.x, i), y = share(at.y, j), z = share(at.z, k);
-    const real* f =
-        s.field + (size_t(k) * size_t(s.nodes.y) + size_t(j)) * size_t(s.nodes.x) + size_t(i);
-    const size_t up = size_t(s.nodes.x), back = up * size_t(s.nodes.y);
-    auto between = [](real a, real b, real share) LANE_CALL { return a + share * (b - a); };
-    const real f00 = between(f[0], f[1], x), f10 = between(f[up], f[up + 1], x),
-               f01 = between(f[back], f[back + 1], x),
-               f11 = between(f[back + up], f[back + up + 1], x), low = between(f00, f10, y),
-               high = between(f01, f11, y);
-    const real alongX =
-        between(between(f[1] - f[0], f[up + 1] - f[up], y),
-                between(f[back + 1] - f[back], f[back + up + 1] - f[back + up], y), z);
-    const Vector<real> slope{alongX, between(f10 - f00, f11 - f01, z), high - low};
-    const real steepness = squareRoot(dot(slope, slope));
-    n = steepness > 0 ? (1 / steepness) * slope : Vector<real>{0, 1, 0};
-    return between(low, high, z);
-}
-
 // What boundary particles have from the start, in the order of their ids. With solids only: the
 // domain's walls are where they are.
 struct WallsAtHome {
@@ -178,6 +124,7 @@ struct WallsAtHome {
     ScalarField mass;      // 0: follows from neighbours
     VectorField area;      // m^2 / kg of a fluid particle, of the surface of what floats
     Vector<real> size;     // m, the domain's
+    VectorField face;      // m, of thin solids: from a particle's face to it, in their own axes
     HD int solidOf(int id) const { return solid ? solid[id - firstId] : -1; }
     // Whether a cluster has any particle of a solid.
     HD bool hasSolid(const Particles& walls, int cluster) const {
@@ -187,13 +134,6 @@ struct WallsAtHome {
         return false;
     }
 };
-
-// The image of x in the domain.
-HD inline Vector<real> intoDomain(const Constants& c, Vector<real> x) {
-    return {x.x - c.period.x * roundDown(x.x * c.inversePeriod.x),
-            x.y - c.period.y * roundDown(x.y * c.inversePeriod.y),
-            x.z - c.period.z * roundDown(x.z * c.inversePeriod.z)};
-}
 
 // Boundary particles go with their solids. Their order is that of the last sort.
 struct PlaceWalls {
@@ -219,6 +159,8 @@ struct PlaceWalls {
         const real distance = surface(s, own, normal);
         store(v.walls.position, i, intoDomain(v.c, s.middle + arm));
         finish(i, distance * turned(s, normal), s.velocity + cross(s.spin, arm));
+        if (s.grace > 0 && v.walls.outward.data)
+            store(v.walls.outward, i, turned(s, load(home.face, k)));
     }
     HD void finish(int i, Vector<real> outward, Vector<real> velocity) const {
         if (v.walls.outward.data) store(v.walls.outward, i, outward);
@@ -404,6 +346,7 @@ inline SolidState solidAtHome(const Scene& scene, const Solid& solid) {
     if (scene.simulation.dimensions == 2)
         middle.z = 0.5 * double(scene.domain.max.z - scene.domain.min.z);
     SolidState s{};
+    s.grace = real(std::min(thinness(scene, solid) / 8, 0.05 * double(scene.simulation.spacing)));
     s.home = s.middle = s.middleBefore = toReal(middle);
     s.axis[0] = {1, 0, 0}, s.axis[1] = {0, 1, 0}, s.axis[2] = {0, 0, 1};
     for (int k = 0; k < 3; ++k) s.axisBefore[k] = s.axis[k];
@@ -439,6 +382,11 @@ public:
                              [](const Solid& s) { return s.moves(); });
         floats_ = std::any_of(scene.solids.begin(), scene.solids.end(),
                               [](const Solid& s) { return s.floats(); });
+        std::vector<int> thin;
+        for (int s = 0; s < count_; ++s)
+            if (states[size_t(s)].grace > 0) thin.push_back(s);
+        fill(thin_, thin);
+        spacing_ = scene.simulation.spacing;
         fillFields(scene, states);
         fill(states_, states), fill(keys_, keys);
         const Vec3 size = scene.domain.max - scene.domain.min;
@@ -448,6 +396,7 @@ public:
     int count() const { return count_; }
     bool moves() const { return moves_; }
     bool floats() const { return floats_; }
+    bool anyThin() const { return thin_.size() > 0; }
     void letMove() { moves_ = true; }  // from now on the mouse may drag them
     // Of the host's solids, m/s.
     double largestSpeed() const {
@@ -468,6 +417,17 @@ public:
         device_.forEach(count_, RememberPose{states_.data()});
         move(state, 0, 0, bodies, motions);
         device_.forEach(count_, MeasureTurn{states_.data(), state});
+    }
+    // As thin ones separate fluid and walls.
+    void screen(const Constants& c) {
+        const Screens screens{states_.data(), thin_.data(),    int(thin_.size()), c,
+                              firstId_,       solidOf_.data(), {face_.data()},    {least_.data()}};
+        screens_.resize(1);
+        device_.upload(screens_.data(), &screens, 1);
+    }
+    const Screens* screens() const { return screens_.size() > 0 ? screens_.data() : nullptr; }
+    void meetWalls(const Constants& c) {
+        device_.forEach(count_, MeetWalls{states_.data(), c, size_, spacing_});
     }
     void placeWalls(const View& v) { device_.forEach(v.walls.slots, PlaceWalls{v, home()}); }
     void keepMasses(const Particles& walls) {
@@ -507,8 +467,8 @@ public:
     }
 
     WallsAtHome home() {
-        return {firstId_,       solidOf_.data(), {position_.data()},
-                {mass_.data()}, {area_.data()},  size_};
+        return {firstId_,       solidOf_.data(), {position_.data()}, {mass_.data()},
+                {area_.data()}, size_,           {face_.data()}};
     }
 
 private:
@@ -540,13 +500,15 @@ private:
         const size_t slots = (walls.size() + clusterSize - 1) / clusterSize * clusterSize;
         std::vector<int> solidOf(slots, -1);
         std::vector<real> mass(slots), area(floats_ ? size_t(vectorSize(int(slots))) : 0);
+        std::vector<real> face(anyThin() ? size_t(vectorSize(int(slots))) : 0),
+            least(anyThin() ? slots : 0);
         // Volumes are of cells a spacing wide, masses of the fluid's particles.
         const double dx = scene.simulation.spacing,
                      cell = std::pow(dx, scene.simulation.dimensions);
         const float share = hasOwnVolume(scene) ? float(cell / particleVolume(scene)) : 1;
         size_t end = 0;
         for (size_t s = 0; s < scene.solids.size(); ++s) {
-            const SolidSample sample = sampleSolid(scene, scene.solids[s]);
+            const SolidSample sample = boundaryOf(scene, scene.solids[s]);
             const std::vector<float>& volumes = sample.volumes;
             if (sizes.size() <= s || volumes.size() != size_t(sizes[s]))
                 throw Error(Exit::Scene,
@@ -556,12 +518,26 @@ private:
                            [&](float v) { return real(v * share); });
             std::fill_n(solidOf.begin() + long(end), sizes[s], int(s));
             if (scene.solids[s].floats()) fillAreas(scene, scene.solids[s], sample, int(end), area);
+            fillFaces(sample, scene.solids[s].shape == Shape::Block, int(end), face, least);
             end += volumes.size();
         }
         std::vector<real> x(vectorSize(int(slots)));
         for (size_t i = 0; i < walls.size(); ++i)
             for (int k = 0; k < 3; ++k) x[vectorOffset(int(i), k)] = walls[i][k];
         fill(solidOf_, solidOf), fill(position_, x), fill(mass_, mass), fill(area_, area);
+        fill(face_, face), fill(least_, least);
+    }
+    // A plate's are seen from any place that is nearer to their face than they are, or for one of
+    // the faces as near; other solids' that are beyond them from anywhere through them.
+    static void fillFaces(const SolidSample& sample, bool isPlate, int first,
+                          std::vector<real>& face, std::vector<real>& least) {
+        for (size_t i = 0; i < sample.faces.size(); ++i, ++first) {
+            const Vec3 f = sample.faces[i];
+            for (int k = 0; k < 3; ++k) face[size_t(vectorOffset(first, k))] = real(f[k]);
+            const bool asNear = f.x != 0 ? f.x < 0 : f.y != 0 ? f.y < 0 : f.z < 0;
+            least[size_t(first)] =
+                isPlate || !sample.beyond[i] ? real(asNear ? -1e-30 : 0) : real(-1e30);
+        }
     }
     static void fillAreas(const Scene& scene, const Solid& solid, const SolidSample& sample,
                           int first, std::vector<real>& out) {
@@ -584,6 +560,10 @@ private:
     Buffer<int, Device> solidOf_{device_};
     Buffer<real, Device> position_{device_}, mass_{device_}, area_{device_}, pressureLoad_{device_},
         otherLoad_{device_}, seen_{device_}, seenAtRest_{device_};
+    Buffer<int, Device> thin_{device_};
+    Buffer<real, Device> face_{device_}, least_{device_};
+    Buffer<Screens, Device> screens_{device_};
+    real spacing_ = 0;  // m
     Buffer<Gap, Device> gap_{device_};
     Buffer<PressureAround, Device> around_{device_};
 };

@@ -102,19 +102,32 @@ template <class F> HD inline void forStretches(int first, int last, int n, const
     for (int k = beyond < 0; k < 2; ++k) f(k ? first : 0, k ? last : beyond);
 }
 
+inline constexpr uint16_t allSeen = 0xffff;
+
 // The clusters of another set that may hold neighbours of one cluster (SIMD lanes only): all that
 // are near enough for the life of the list, and of these the ones with a neighbour in this step.
+// Beside thin solids the last ones of both have pairs that do not see each other: a bit for each
+// pair, particle by particle of the cluster, says whether it does.
 struct ClusterList {
     const uint32_t* clusters;
     uint32_t* pruned;
     uint32_t count, prunedCount;
+    uint32_t clear, prunedClear;  // how many come first of which all pairs see each other
+    const uint16_t* seen;
+    uint16_t* prunedSeen;
+    uint16_t within = allSeen;  // the same of the cluster with itself, where lists hold each pair
+                                // once
 };
+
+// Whose pairs thin solids may separate.
+enum class Between { Nobody, Fluid, FluidAndWalls, WallsAndFluid };
 
 // Where the neighbours of one set's particles are found in another set (or in their own).
 struct Neighbourhood {
     ClusterList* lists;    // per cluster of the set; null without SIMD
     const int* cellStart;  // of the other set; slots [cellStart[c], cellStart[c+1]) are in cell c
     VectorField position;  // of the other set
+    Between between = Between::Nobody;
 };
 
 // Cubes of cells, for local steps. What is known of each:
@@ -192,8 +205,11 @@ struct SolidState {
     real offset[Convex::mostPlanes];
     real radius;
     Vector<real> across;
-    real reach;                 // m, from its middle to its farthest point
-    Vector<real> centreOfMass;  // m, of one that floats
+    real reach;  // m, from its middle to its farthest point
+    real grace;  // m, 0: it is not thin; otherwise what goes no deeper into it does not cross it
+    real beyond[Convex::mostPlanes];  // m, of one that is thin: how much further it separates,
+                                      // where it stands on the domain's wall
+    Vector<real> centreOfMass;        // m, of one that floats
     real speed;  // m/s, the most of its points, of one that floats or is dragged; otherwise 0: the
                  // scene knows it
     Vector<real> middleBefore, axisBefore[3];  // where the step began, for collisions,
@@ -205,6 +221,18 @@ struct SolidState {
     Int3 nodes;
 };
 
+// Thin solids, which hide from each other what is on their sides.
+struct Screens {
+    const SolidState* solids;
+    const int* thin;  // which of them
+    int count;
+    Constants c;
+    int firstId;  // below, of boundary particles by their ids from that one on:
+    const int* solidOf;
+    VectorField face;   // m, of a thin solid's particles: from its face to it, in its own axes
+    ScalarField least;  // m^2: it is seen from where that is further along `face` than itself
+};
+
 struct View {
     Particles fluid, walls;
     SolidState* solids;
@@ -214,6 +242,7 @@ struct View {
     Constants c;
     StepState* state;
     Blocks blocks;
+    const Screens* screens;  // null: no solid is thin
 };
 
 // m/s², at the run's time, which is on the device: a recorded step needs no new constants while it

@@ -68,8 +68,8 @@ TEST_F(OutsideValidity, IsAnErrorWhenStrict) {
 }
 
 TEST_F(OutsideValidity, OfASceneIsAnErrorBeforeItRuns) {
-    const std::string thin =
-        R"( --set 'solids=[{"name":"p","shape":"block","min":[0.3,0,0],"max":[0.305,0.2,0.2]}]' )";
+    const std::string thin = R"( --set 'solids=[{"name":"p","shape":"block",)"
+                             R"("min":[0.3,0.1,0],"max":[0.305,0.105,0.2]}]' )";
     const Outcome strict = call(Run + thin + "--strict --time 0.01 --csv c.csv");
     EXPECT_EQ(strict.code, int(Exit::Invalid));
     EXPECT_NE(strict.text.find("solids[0] (p), thickness: 0.005 m are 0.25 spacings"),

@@ -107,6 +107,29 @@ TEST(Probes, MeanNeverGoesBeyondTheParticlesValues) {
     EXPECT_GT(reading(scene, "m.pressure"), pressureAt({1.5, 2.02, 0}));
 }
 
+// Beside a thin solid, wherever it is by now, on either side that side's fluid alone is read.
+TEST(Probes, ThinSolidsAreNotSeenThrough) {
+    Scene scene;
+    scene.simulation.dimensions = 2;
+    scene.simulation.spacing = 0.02f;
+    scene.domain.max = {0.4f, 0.4f, 0.2f};
+    setKnob(scene, R"(solids=[{"shape":"block","min":[0.1,0,0],"max":[0.104,0.4,0.2]}])");
+    setKnob(scene, R"(output.probes=[{"name":"left","position":[0.19,0.2,0]},
+                                     {"name":"right","position":[0.215,0.2,0]}])");
+    std::vector<Particle> particles;
+    for (int i = 0; i < 400; ++i) {
+        Particle p;
+        p.position = {0.01 + 0.02 * (i % 20), 0.01 + 0.02 * (i / 20), 0.1};
+        p.pressure = p.position.x < 0.2 ? 1000 : 300;
+        particles.push_back(p);
+    }
+    const SolidPose moved{{0.202, 0.2, 0.1}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    const Probes probes(scene);
+    const std::vector<double> values = probes.read(particles, {moved});
+    EXPECT_NEAR(values[probes.column("left.pressure")], 1000, 1e-6);
+    EXPECT_NEAR(values[probes.column("right.pressure")], 300, 1e-6);
+}
+
 TEST(Probes, PeriodicSidesAreSeenThrough) {
     Scene scene = poolScene(2, R"([{"name":"side","position":[1,2.2,0]}])");
     EXPECT_NEAR(reading(scene, "side.pressure"), pressureAt({1.01, 2.2, 0}), 1.0);

@@ -1,0 +1,119 @@
+// Which solids are thin, which walls their sides have, and which ways they are in.
+#include "scene/thin_solid.h"
+
+#include "meshes.h"
+#include "scene/json.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace spindrift {
+namespace {
+
+constexpr double Dx = 0.02;
+
+Scene sceneOf(int dimensions) {
+    Scene scene;
+    scene.simulation.dimensions = dimensions;
+    scene.simulation.spacing = float(Dx);
+    scene.domain.max = {1, 1, 1};
+    return scene;
+}
+Solid blockOf(Vec3 low, Vec3 high) {
+    Solid solid;
+    solid.shape = Shape::Block, solid.min = low, solid.max = high;
+    return solid;
+}
+Solid meshOf(const Surface& surface, const std::string& name) {
+    Solid solid;
+    solid.shape = Shape::Mesh, solid.path = surface.write(testing::TempDir() + "/" + name);
+    return solid;
+}
+
+TEST(ThinSolid, ArePlatesAndShellsWhoseLayersWouldMeet) {
+    for (const int dimensions : {2, 3})
+        for (int axis = 0; axis < dimensions; ++axis)
+            for (const double spacings : {0.25, 1.0, 2.0, 3.0, 3.4, 3.6, 5.0}) {
+                Vec3 high{0.8f, 0.8f, 0.8f};
+                high[axis] = float(0.3 + spacings * Dx);
+                const double thickness =
+                    thinness(sceneOf(dimensions), blockOf({0.3f, 0.3f, 0.3f}, high));
+                if (spacings < 3.5)
+                    EXPECT_NEAR(thickness, spacings * Dx, 1e-6);
+                else
+                    EXPECT_EQ(thickness, 0) << spacings;
+            }
+    // Fluid feels its way around rods and small pieces.
+    EXPECT_EQ(thinness(sceneOf(3), blockOf({0.3f, 0.3f, 0.3f}, {0.8f, 0.32f, 0.32f})), 0);
+    EXPECT_EQ(thinness(sceneOf(2), blockOf({0.3f, 0.3f, 0}, {0.32f, 0.32f, 1})), 0);
+    const Surface sheet = boxSurface({0.2, 0.2, 0.2}, {0.8, 0.204, 0.8});
+    EXPECT_NEAR(thinness(sceneOf(3), meshOf(sheet, "sheet.obj")), 0.004, 1e-6);
+    EXPECT_EQ(thinness(sceneOf(3), meshOf(sphereSurface({0.5, 0.5, 0.5}, 0.2, 2), "b.obj")), 0);
+}
+
+// Fluid at half a spacing in front of either face has behind it all that it can see of a wall.
+TEST(ThinSolid, EachSideHasAWallOfItsOwn) {
+    for (const int dimensions : {2, 3})
+        for (const double spacings : {0.25, 0.5, 1.0, 1.5, 2.0, 3.0})
+            for (const bool mesh : {false, true}) {
+                if (mesh && dimensions == 2) continue;
+                SCOPED_TRACE(testing::Message() << dimensions << " " << spacings << " " << mesh);
+                const double end = 0.4 + spacings * Dx;
+                const Scene scene = sceneOf(dimensions);
+                const Solid plate =
+                    mesh ? meshOf(boxSurface({0.4, 0.2, 0.2}, {end, 0.8, 0.8}), "plate.obj")
+                         : blockOf({0.4f, 0.2f, 0.2f}, {float(end), 0.8f, 0.8f});
+                const SolidSample sides = sampleSides(scene, plate);
+                for (const double sign : {-1.0, 1.0}) {
+                    double volume = 0, moment = 0;  // of a column behind the face
+                    for (size_t i = 0; i < sides.positions.size(); ++i) {
+                        const Vec3 p = sides.positions[i];
+                        if (std::abs(p.y - 0.5f) > 0.1f - 1e-4f ||
+                            (dimensions == 3 && std::abs(p.z - 0.5f) > 0.1f - 1e-4f) ||
+                            double(sides.faces[i].x) * sign > 0)
+                            continue;
+                        const double depth = sign > 0 ? end - p.x : p.x - 0.4;
+                        EXPECT_NEAR(length(sides.faces[i]), depth, 0.3 * Dx);
+                        if (depth > 1.99 * Dx) continue;
+                        volume += sides.volumes[i], moment += sides.volumes[i] * depth / Dx;
+                    }
+                    const double column = std::pow(10, dimensions - 1);
+                    EXPECT_NEAR(volume / column, 2, mesh ? 0.5 : 1e-3);
+                    EXPECT_NEAR(moment / volume, 1, mesh ? 0.25 : 1e-3);
+                }
+            }
+}
+
+TEST(ThinSolid, SeparatesWhatIsOnItsSides) {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> in(-0.1, 0.1);
+    const Scene scene = sceneOf(3);
+    Solid disc;
+    disc.shape = Shape::Cylinder, disc.axis = Axis::X, disc.radius = 0.1f, disc.height = 0.01f;
+    const Solid all[] = {blockOf({0.495f, 0.4f, 0.4f}, {0.505f, 0.6f, 0.6f}), disc,
+                         meshOf(boxSurface({0.495, 0.4, 0.4}, {0.505, 0.6, 0.6}), "wall.obj")};
+    for (const Solid& solid : all) {
+        const Convex shape = convexOf(solid, 3);
+        const double thickness = thinness(scene, solid);
+        EXPECT_NEAR(thickness, 0.01, 1e-6);
+        int separated = 0;
+        for (int k = 0; k < 3000; ++k) {
+            const Vec3d p{in(random), 1.5 * in(random), 1.5 * in(random)},
+                q{in(random), 1.5 * in(random), 1.5 * in(random)};
+            double deepest = 1;
+            for (int i = 0; i <= 400; ++i)
+                deepest = std::min(deepest, shape.nearest(p + (i / 400.0) * (q - p)).distance);
+            if (std::abs(deepest + thickness / 8) < 4e-4) continue;  // nearly touches
+            const bool crosses = deepest < -thickness / 8;
+            EXPECT_EQ(separates(shape, thickness, p, q), crosses);
+            EXPECT_EQ(separates(shape, thickness, q, p), crosses);
+            separated += crosses;
+        }
+        EXPECT_GT(separated, 500);
+    }
+}
+
+}  // namespace
+}  // namespace spindrift
