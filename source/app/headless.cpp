@@ -219,7 +219,7 @@ private:
         if (found != HealthGuard::Finding::WentBack) return;
         steps_ = now_.steps;
         validity_.dropAfter(now_.time);
-        for (Recorder& recorder : recorders_) recorder.goBack(now_.time);
+        for (Recorder& recorder : recorders_) recorder.goBack(now_.time, shortestStep());
     }
 
     void judge() {
@@ -263,8 +263,8 @@ private:
         const Output& output = scene_.output;
         const double frame = 1 / double(output.fps),
                      row = output.sampleEvery > 0 ? asWritten(output.sampleEvery) : frame;
-        const auto after = [](double last, double every) {
-            return last < 0 ? 0 : multipleAfter(last, every);
+        const auto after = [this](double last, double every) {
+            return last < 0 ? 0 : Recorder::timeAfter(last, every, shortestStep());
         };
         if (hasRows())
             recorders_.push_back({row, after(series_->lastTime(), row), [this] { addRow(); },

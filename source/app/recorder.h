@@ -16,21 +16,28 @@ inline double multipleAfter(double time, double every) {
     return (std::floor(time / every * (1 + 1e-9)) + 1) * every;
 }
 
-// Writes at the multiples of an interval of simulated time, s.
+// Writes at the multiples of an interval of simulated time, s. What is due within so short a time
+// that no step is worth it counts as due now.
 struct Recorder {
     double every, next;
     std::function<void()> write;
     std::function<void(double time)> rewind;  // forgets what was written after this time
 
-    // What is due within so short a time that no step is worth it is written now.
-    void writeIfDue(double now, double shortestStep) {
-        if (!isReached(next, now, std::min(shortestStep, every / 2))) return;
-        write();
-        next = multipleAfter(std::max(now, next), every);
+    static double tolerance(double every, double shortestStep) {
+        return std::min(shortestStep, every / 2);
     }
-    void goBack(double now) {
+    // The first time to write at after something was written at `now`.
+    static double timeAfter(double now, double every, double shortestStep) {
+        return multipleAfter(now + tolerance(every, shortestStep), every);
+    }
+    void writeIfDue(double now, double shortestStep) {
+        if (!isReached(next, now, tolerance(every, shortestStep))) return;
+        write();
+        next = timeAfter(now, every, shortestStep);
+    }
+    void goBack(double now, double shortestStep) {
         rewind(now);
-        next = std::min(next, multipleAfter(now, every));
+        next = std::min(next, timeAfter(now, every, shortestStep));
     }
 };
 
