@@ -150,6 +150,34 @@ void runPoiseuille(const Scene& scene, ValidationRun& run) {
               [=](double y, double t) { return poiseuilleFlow(y, t, 1, nu, F); });
 }
 
+void runHalfChannel(const Scene& scene, ValidationRun& run) {
+    const double nu = scene.fluid.viscosity / scene.fluid.restDensity,
+                 F = scene.simulation.gravity.x;
+    runPlates(scene, run, F / (2 * nu),
+              [=](double y, double t) { return poiseuilleFlow(y, t, 2, nu, F); });
+}
+
+void runSlipChannel(const Scene& scene, ValidationRun& run) {
+    const double nu = scene.fluid.viscosity / scene.fluid.restDensity,
+                 F = scene.simulation.gravity.x, b = scene.walls.slip,
+                 U = F / (2 * nu) * (0.25 + b);
+    Stepping sim(scene, run);
+    sim.until(3 / nu);
+    double sum = 0;
+    const std::vector<Particle> particles = sim->particles();
+    Curve ours{"u", {}, {}, Curve::Points}, known{"exact", {}, {}, Curve::Line};
+    auto exact = [&](double y) { return F / (2 * nu) * (y * (1 - y) + b); };
+    for (const Particle& p : particles) {
+        sum += std::pow(p.velocity.x - exact(p.position.y), 2) / double(particles.size());
+        ours.x.push_back(p.position.y), ours.y.push_back(p.velocity.x / U);
+    }
+    for (int k = 0; k <= 50; ++k)
+        known.x.push_back(k / 50.0), known.y.push_back(exact(k / 50.0) / U);
+    run.chart = {"", "y / L", "u / U", {known, ours}};
+    run.metrics = {
+        {"L2 of u / U", "%", 100 * std::sqrt(sum) / U, targetAt(run.resolution, 20, 0.5)}};
+}
+
 void runCouette(const Scene& scene, ValidationRun& run) {
     const double nu = scene.fluid.viscosity / scene.fluid.restDensity, V = scene.walls.velocity.x;
     runPlates(scene, run, V, [=](double y, double t) { return couetteFlow(y, t, 1, nu, V); });

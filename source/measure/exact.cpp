@@ -67,6 +67,59 @@ void OscillatingDrop::advance(double dt) {
     a = s.a, rate = s.rate;
 }
 
+namespace {
+
+using Complex = std::complex<double>;
+
+// The root of f near a guess, by secants.
+template <class F> Complex rootNear(Complex s, const F& f) {
+    Complex before = 0.999 * s, valueBefore = f(before);
+    for (int k = 0; k < 60; ++k) {
+        const Complex value = f(s);
+        if (value == valueBefore) break;
+        const Complex next = s - value * (s - before) / (value - valueBefore);
+        before = s, valueBefore = value, s = next;
+    }
+    return s;
+}
+
+// Modified Bessel function of the first kind, by its series.
+Complex besselI(int n, Complex z) {
+    const Complex quarter = z * z / 4.0;
+    Complex term = std::pow(z / 2.0, n) / std::tgamma(n + 1.0), sum = 0;
+    for (int k = 1; k < 500; ++k) {
+        sum += term;
+        term *= quarter / double(k * (k + n));
+    }
+    return sum;
+}
+
+}  // namespace
+
+std::complex<double> viscousWave(double k, double depth, double g, double nu) {
+    const double restoring = g * k * std::tanh(k * depth);  // 1/s^2
+    return rootNear({-2 * nu * k * k, std::sqrt(restoring)}, [&](Complex s) {
+        const Complex K = std::sqrt(k * k + s / nu), rate = s + 2 * nu * k * k;
+        return rate * rate + restoring -
+               4 * nu * nu * k * k * k * K * std::tanh(k * depth) / std::tanh(K * depth);
+    });
+}
+
+std::complex<double> viscousDrop(int n, double R, double Omega, double nu) {
+    return rootNear(
+        {-2.0 * n * (n - 1) * nu / (R * R), std::sqrt(double(n)) * Omega}, [&](Complex s) {
+            const Complex k = std::sqrt(s / nu), z = k * R, i = besselI(n, z),
+                          slope = 0.5 * k * (besselI(n - 1, z) + besselI(n + 1, z)),
+                          bend = k * k * i * (1.0 + double(n * n) / (z * z)) - slope / R;
+            // Potential r^n, and so much vorticity that there is no shear at R.
+            const double power = std::pow(R, n - 2), N = n;
+            const Complex B = -2 * N * (N - 1) * power / (bend - slope / R + N * N * i / (R * R));
+            const Complex u = N * power * R + B * N * i / R,
+                          stretch = N * (N - 1) * power + B * N * (slope / R - i / (R * R));
+            return s * power * R * R + Omega * Omega * R * u / s + 2 * nu * stretch;
+        });
+}
+
 void SettlingSphere::advance(double dt) {
     const double ratio = density / fluidDensity, perSpeed = fluidDensity * diameter / viscosity;
     auto drag = [&](double u) { return u * (1 + 0.15 * std::pow(perSpeed * u, 0.687)); };

@@ -3,6 +3,8 @@
 #include "core/vec.h"
 #include "scene/scene.h"
 
+#include <complex>
+
 namespace spindrift {
 
 // Vortices in a periodic square of side L, largest speed U at t = 0, rho0 the density: Taylor and
@@ -26,6 +28,15 @@ struct OscillatingDrop {
     static constexpr double period = 4.827343;  // s, of both
     void advance(double dt);                    // s
 };
+
+// Small free oscillations of viscous fluid, as exp(st), s in 1/s: the root near the inviscid one.
+// Standing waves of wave number k (1/m) on fluid of some depth (m) that slides on its floor, in
+// gravity g (m/s²): (s + 2 nu k^2)^2 + g k tanh kH = 4 nu^2 k^3 K tanh kH / tanh KH, K^2 = k^2 + s
+// / nu (Lamb 1932, paragraph 349, for deep water).
+std::complex<double> viscousWave(double k, double depth, double g, double nu);
+// A disc of radius R (m) pulled to its centre by -Omega^2 r, its radius as cos(n theta): potential
+// flow and vorticity I_n(r sqrt(s / nu)), without stress on the surface.
+std::complex<double> viscousDrop(int n, double R, double Omega, double nu);
 
 // A sphere that sinks from rest and takes half the mass of the fluid in its place along; its drag
 // grows as that of Schiller and Naumann 1933, to its weight at the speed `terminal`. Without what

@@ -7,6 +7,7 @@
 #include "measure/stepping.h"
 #include "scene/convex.h"
 #include "scene/particles.h"
+#include "scene/start_fields.h"
 
 #include <fmt/format.h>
 
@@ -66,6 +67,144 @@ void runDrop(const Scene& scene, ValidationRun& run) {
         {"energy after 10 periods", "%", 100 * (energy / start - 1),
          targetAt(run.resolution, 50, 3.0)},
         {"largest momentum / (M s0 R)", "", momentum / M, targetAt(run.resolution, 50, 3e-4)}};
+}
+
+// --- viscosity at free surfaces ---
+
+namespace {
+
+// Of a function sampled at equal steps: where its peaks are, and how high.
+struct Peaks {
+    std::vector<double> at, height;
+};
+Peaks peaksOf(const Curve& curve) {
+    Peaks peaks;
+    for (size_t i = 1; i + 1 < curve.y.size(); ++i) {
+        const double a = curve.y[i - 1], b = curve.y[i], c = curve.y[i + 1];
+        if (!(b > a && b >= c && b > 1e-4 * curve.y[0])) continue;
+        const double shift = 0.5 * (a - c) / (a - 2 * b + c);  // of the parabola through the three
+        peaks.at.push_back(curve.x[i] + shift * (curve.x[i] - curve.x[i - 1]));
+        peaks.height.push_back(b - 0.25 * (a - c) * shift);
+    }
+    return peaks;
+}
+
+// Slope of a line through points.
+double slopeOf(const std::vector<double>& x, const std::vector<double>& y) {
+    double meanX = 0, meanY = 0, xy = 0, xx = 0;
+    for (size_t i = 0; i < x.size(); ++i)
+        meanX += x[i] / double(x.size()), meanY += y[i] / double(x.size());
+    for (size_t i = 0; i < x.size(); ++i)
+        xy += (x[i] - meanX) * (y[i] - meanY), xx += (x[i] - meanX) * (x[i] - meanX);
+    return xy / xx;
+}
+
+}  // namespace
+
+void runOscillation(const Scene& scene, ValidationRun& run, std::complex<double> exact,
+                    int periods) {
+    constexpr int PerPeriod = 60;
+    const double T = 2 * pi / exact.imag();
+    Stepping sim(scene, run);
+    // How much of the motion that there was at the start; sound and noise are not of it.
+    auto amplitude = [&] {
+        double sum = 0;
+        for (const Particle& p : sim->particles()) {
+            const Vec3d at = p.position - toDouble(scene.domain.min);
+            sum += dot(p.velocity, startOf(scene, scene.fluid.bodies[0], at).velocity);
+        }
+        return sum;
+    };
+    Curve ours{"square of the velocity", {}, {}, Curve::Points},
+        known{"decay", {}, {}, Curve::Line};
+    for (int k = 0; k <= periods * PerPeriod; ++k) {
+        sim.until(k * T / PerPeriod);
+        ours.x.push_back(sim.time()), ours.y.push_back(std::pow(amplitude(), 2));
+    }
+    Peaks peaks = peaksOf(ours);
+    std::vector<double> logarithms, numbers;
+    for (size_t k = 0; k < peaks.at.size(); ++k)
+        logarithms.push_back(std::log(peaks.height[k])), numbers.push_back(double(k));
+    const double rate = -slopeOf(peaks.at, logarithms) / 2, period = 2 * slopeOf(numbers, peaks.at);
+    for (double& y : ours.y) y /= peaks.height[0];
+    for (size_t k = 0; k < ours.x.size(); ++k) {
+        ours.x[k] /= T;
+        known.x.push_back(ours.x[k]);
+        known.y.push_back(std::exp(2 * exact.real() * (ours.x[k] * T - peaks.at[0])));
+    }
+    run.chart = {"", "t / T", "u^2 / of its first peak", {known, ours}, false, true};
+    run.metrics = {
+        {"decay rate", "%", 100 * (rate / -exact.real() - 1), targetAt(run.resolution, 50, 5.0)},
+        {"period", "%", 100 * (period / T - 1), {}},
+        {"energy left at the last peak", "%", 100 * peaks.height.back() / peaks.height[0], {}}};
+}
+
+void runViscousWave(const Scene& scene, ValidationRun& run) {
+    const double k = 2 * pi / scene.domain.size().x, H = scene.fluid.bodies[0].max.y,
+                 nu = scene.fluid.viscosity / scene.fluid.restDensity;
+    runOscillation(scene, run, viscousWave(k, H, -scene.simulation.gravity.y, nu), 4);
+}
+
+void runViscousDrop(const Scene& scene, ValidationRun& run) {
+    const double nu = scene.fluid.viscosity / scene.fluid.restDensity;
+    runOscillation(scene, run,
+                   viscousDrop(2, scene.fluid.bodies[0].radius, scene.simulation.centralRate, nu),
+                   4);
+}
+
+void runRotation(const Scene& scene, ValidationRun& run) {
+    Stepping sim(scene, run);
+    const double mass = particleMass(scene);
+    auto turning = [&] {  // kg m^2/s a metre
+        double sum = 0;
+        for (const Particle& p : sim->particles())
+            sum += mass * (p.position.x * p.velocity.y - p.position.y * p.velocity.x);
+        return sum;
+    };
+    const Measurement start = sim->measure();
+    const double before = turning();
+    Curve kinetic{"kinetic energy", {}, {}, Curve::Line};
+    for (int k = 0; k <= 50; ++k) {
+        sim.until(10.0 * k / 50);
+        kinetic.x.push_back(sim.time());
+        kinetic.y.push_back(sim->measure().kineticEnergy / start.kineticEnergy);
+    }
+    const Measurement end = sim->measure();
+    run.chart = {"", "t Omega", "E_k / at the start", {kinetic}};
+    run.metrics = {
+        {"kinetic energy after t = 10", "%", 100 * (end.kineticEnergy / start.kineticEnergy - 1),
+         targetAt(run.resolution, 25, 1.0)},
+        {"kinetic and potential", "%",
+         100 * ((end.kineticEnergy + end.potentialEnergy) /
+                    (start.kineticEnergy + start.potentialEnergy) -
+                1),
+         targetAt(run.resolution, 25, 1.0)},
+        {"angular momentum", "%", 100 * (turning() / before - 1), {}}};
+}
+
+void runFilm(const Scene& scene, ValidationRun& run) {
+    const double nu = scene.fluid.viscosity / scene.fluid.restDensity,
+                 F = scene.simulation.gravity.x, H = scene.fluid.bodies[0].max.y,
+                 U = F * H * H / (2 * nu);
+    Stepping sim(scene, run);
+    sim.until(4 * H * H / nu);
+    double sum = 0, flow = 0, top = 0;
+    const std::vector<Particle> particles = sim->particles();
+    Curve ours{"u", {}, {}, Curve::Points}, known{"exact", {}, {}, Curve::Line};
+    for (const Particle& p : particles) {
+        const double y = p.position.y, u = F / (2 * nu) * y * (2 * H - y);
+        sum += std::pow(p.velocity.x - u, 2) / double(particles.size());
+        flow += p.velocity.x / double(particles.size());
+        top = std::max(top, p.velocity.x);
+        ours.x.push_back(y / H), ours.y.push_back(p.velocity.x / U);
+    }
+    for (int k = 0; k <= 50; ++k)
+        known.x.push_back(k / 50.0), known.y.push_back(k / 50.0 * (2 - k / 50.0));
+    run.chart = {"", "y / H", "u / U", {known, ours}};
+    run.metrics = {
+        {"L2 of u / U", "%", 100 * std::sqrt(sum) / U, targetAt(run.resolution, 20, 1.0)},
+        {"mean velocity", "%", 100 * (flow / (2 * U / 3) - 1), targetAt(run.resolution, 20, 1.0)},
+        {"largest velocity", "%", 100 * (top / U - 1), targetAt(run.resolution, 20, 1.0)}};
 }
 
 // --- C2 hydrostatic tank ---

@@ -193,6 +193,38 @@ void checkMovingFace(const Scene& scene) {
                "formulation but the classic one");
 }
 
+void requireSlip(float length, const std::string& path) {
+    if (length < 0 && length != -1)
+        refuse(path, fmt::format("{} m is no length; use -1 for fluid that slides freely", length));
+}
+
+void checkSlip(const Scene& scene) {
+    const Walls& walls = scene.walls;
+    requireSlip(walls.slip, "walls.slip");
+    for (int k = 0; k < 3; ++k)
+        for (const auto& [lengths, name] :
+             {std::pair(walls.slipMin, "walls.slip_min"), {walls.slipMax, "walls.slip_max"}}) {
+            requireSlip(lengths[k], name);
+            if (lengths[k] != 0 && (k >= scene.simulation.dimensions || scene.domain.periodic(k)))
+                refuse(name, fmt::format("there is no wall across {}; set that to 0", "xyz"[k]));
+        }
+    for (size_t s = 0; s < scene.solids.size(); ++s)
+        requireSlip(scene.solids[s].slip, fmt::format("solids[{}].slip", s));
+    const bool faces = walls.slip != 0 || walls.slipMin != Vec3{} || walls.slipMax != Vec3{};
+    if (faces && walls.kind != WallKind::Particles)
+        refuse("walls.slip",
+               "walls that reflect have walls.friction; use walls.kind particles, or set it to 0");
+    if (faces && scene.simulation.formulation == Formulation::Classic)
+        refuse("walls.slip", "the classic formulation's walls let all slip; set it to 0");
+    const int face = int(walls.movingFace) - 1;
+    if (face < 0) return;
+    const Vec3 own = face % 2 ? walls.slipMax : walls.slipMin;
+    if (walls.slip < 0 || own[face / 2] < 0)
+        refuse("walls.moving_face",
+               "fluid slides freely on it, and stays behind; give it a slip "
+               "length of 0 or more, or set moving_face to none");
+}
+
 void checkBody(const Scene& scene, size_t index) {
     const Body& body = scene.fluid.bodies[index];
     if (body.shape == Shape::Plane)
@@ -506,6 +538,7 @@ void checkScene(const Scene& scene, const std::string& place, std::optional<Part
         const ParticleCount count = begun ? *begun : countBodies(scene);
         checkFills(scene, count);
         checkMovingFace(scene);
+        checkSlip(scene);
         checkRareForces(scene);
         if (!begun) checkPlacement(scene);
         checkSolids(scene);

@@ -55,6 +55,13 @@ void checkReflecting(const Scene& scene) {
                "delta_plus");
 }
 
+void checkViscosityForm(const Scene& scene) {
+    if (scene.simulation.formulation == Formulation::TransportVelocity &&
+        viscosityForm(scene) != ViscosityForm::Morris)
+        refuse("fluid.viscosity_form",
+               "monaghan is without what transport_velocity corrects; use auto or morris");
+}
+
 void checkPressureForm(const Scene& scene) {
     const Formulation formulation = scene.simulation.formulation;
     if (scene.simulation.pressureForm == PressureForm::Squares) return;
@@ -73,6 +80,7 @@ void checkMethods(const Scene& scene) {
     if (formulation == Formulation::Classic) checkClassic(scene);
     checkReflecting(scene);
     checkPressureForm(scene);
+    checkViscosityForm(scene);
     const auto floats = [](const Solid& s) { return s.floats(); };
     const bool several =
         isMixture(scene) || std::any_of(scene.solids.begin(), scene.solids.end(), floats);

@@ -146,6 +146,25 @@ float largestViscosity(const Scene& scene) {
     return most;
 }
 
+bool letsSlip(const Scene& scene) {
+    return scene.walls.slip != 0 || scene.walls.slipMin != Vec3{} ||
+           scene.walls.slipMax != Vec3{} ||
+           std::any_of(scene.solids.begin(), scene.solids.end(),
+                       [](const Solid& s) { return s.slip != 0; });
+}
+
+ViscosityForm viscosityForm(const Scene& scene) {
+    if (scene.fluid.viscosityForm != ViscosityForm::Auto) return scene.fluid.viscosityForm;
+    return scene.simulation.formulation == Formulation::TransportVelocity ? ViscosityForm::Morris
+                                                                          : ViscosityForm::Monaghan;
+}
+const char* whyViscosityForm(const Scene& scene) {
+    if (scene.fluid.viscosityForm != ViscosityForm::Auto) return "fluid.viscosity_form says so";
+    return viscosityForm(scene) == ViscosityForm::Morris
+               ? "transport_velocity has no free surface, and corrects Morris's sum"
+               : "it drags fluid at free surfaces (fluid.viscosity_form)";
+}
+
 bool mixes(const Scene& scene) {
     return scene.fluid.velocityTransfer > 0 || scene.fluid.buoyancy > 0;
 }

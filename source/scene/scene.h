@@ -15,6 +15,7 @@ enum class Simd { Auto, Avx512, Avx2, Sse };
 enum class Formulation { Wcsph, DeltaSph, DeltaPlus, TransportVelocity, Classic };
 enum class Kernel { WendlandC2, CubicSpline, WendlandC4, WendlandC6, QuinticSpline, Mueller };
 enum class PressureForm { Squares, Mean };
+enum class ViscosityForm { Auto, Morris, Monaghan };
 enum class EquationOfState { Tait, Linear };
 enum class WallKind { Reflect, Particles };
 enum class TimeMode { Fixed, Cfl, Local };
@@ -23,7 +24,7 @@ enum class Shape { Block, Sphere, Cylinder, Wedge, Plane, Mesh, File };
 enum class Axis { X, Y, Z };
 enum class Up { Auto, X, Y, Z, MinusX, MinusY, MinusZ };
 enum class ColorBy { Plain, Velocity, Pressure, Density, Acceleration, Id, Fluid, Surface };
-enum class Field { Uniform, TaylorGreen, Stretching, Rotation, Shear, SoundWave };
+enum class Field { Uniform, TaylorGreen, Stretching, Rotation, Shear, SoundWave, StandingWave };
 enum class StartPlaces { Lattice, Relaxed };
 enum class StartPressure { None, Hydrostatic };
 enum class Face { None, XMin, XMax, YMin, YMax, ZMin, ZMax };
@@ -82,7 +83,8 @@ struct Solid : Form {
     std::string motion;       // a CSV that becomes the keyframes when the scene is read
     float density = 0;        // kg/m³ of one that floats, 0 = it moves as prescribed
     float friction =
-        0.3f;  // Coulomb's coefficient where one that floats touches walls and other solids
+        0.3f;        // Coulomb's coefficient where one that floats touches walls and other solids
+    float slip = 0;  // m, as of walls
     bool floats() const { return density > 0; }
     bool moves() const { return !keyframes.empty() || velocity != Vec3{} || spin != 0 || floats(); }
 };
@@ -186,6 +188,11 @@ struct Walls {
     Face movingFace =
         Face::None;          // slides with `velocity`, and takes fluid along that sticks to it
     Vec3 velocity{0, 0, 0};  // m/s
+    // Navier's slip lengths, m: how far behind a face the fluid's velocity would be the wall's. 0:
+    // it sticks, -1: it slides freely. Of all faces, and of the three at `min` and at `max` of the
+    // domain; the one that lets it slip more counts.
+    float slip = 0;
+    Vec3 slipMin{0, 0, 0}, slipMax{0, 0, 0};
 };
 
 struct Fluid {
@@ -201,8 +208,9 @@ struct Fluid {
     float airDensity = 0;           // kg/m³, of the air that slows drops; 0 = none
     float dragCoefficient = 0.47f;  // of the spheres as which it slows them
     Vec3 wind{0, 0, 0};             // m/s, of that air
-    float viscosity = 0.001f;       // Pa s, dynamic (Morris 1997); classic: its own coefficient
-    float artificialViscosity = 0.05f;  // alpha of Monaghan 1992
+    float viscosity = 0.001f;       // Pa s, dynamic; classic: its own coefficient
+    ViscosityForm viscosityForm = ViscosityForm::Auto;  // of the sum that stands for it
+    float artificialViscosity = 0.05f;                  // alpha of Monaghan 1992
     float densityDiffusion = 0.1f;  // delta of Molteni & Colagrossi 2009, where density is carried
     float shifting = 1;  // share of Sun 2019's particle shifting, delta_plus and transport_velocity
     EquationOfState equationOfState = EquationOfState::Tait;
@@ -323,6 +331,12 @@ float viscosity(const Scene&, const Body&);
 bool isMixture(const Scene&);
 // The most of all fluids, Pa s.
 float largestViscosity(const Scene&);
+// Whether any wall or solid lets fluid slip.
+bool letsSlip(const Scene&);
+// The sum that stands for viscosity: the one that is asked for, or by auto the one for this scene;
+// and why not the other.
+ViscosityForm viscosityForm(const Scene&);
+const char* whyViscosityForm(const Scene&);
 // What is up in pictures: view.up, or in place of auto against the largest part of gravity, and y
 // where there is none or it drives a flow along a periodic axis. As a unit vector:
 Up upOf(const Scene&);

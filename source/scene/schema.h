@@ -30,6 +30,7 @@ constexpr auto enumNames(Kernel) {
                       "wendland_c6", "quintic_spline", "mueller"};
 }
 constexpr auto enumNames(PressureForm) { return std::array{"squares", "mean"}; }
+constexpr auto enumNames(ViscosityForm) { return std::array{"auto", "morris", "monaghan"}; }
 constexpr auto enumNames(EquationOfState) { return std::array{"tait", "linear"}; }
 constexpr auto enumNames(WallKind) { return std::array{"reflect", "particles"}; }
 constexpr auto enumNames(TimeMode) { return std::array{"fixed", "cfl", "local"}; }
@@ -47,7 +48,8 @@ constexpr auto enumNames(ColorBy) {
 }
 constexpr auto enumNames(ColorMap) { return std::array{"viridis", "cividis", "turbo", "coolwarm"}; }
 constexpr auto enumNames(Field) {
-    return std::array{"uniform", "taylor_green", "stretching", "rotation", "shear", "sound_wave"};
+    return std::array{"uniform", "taylor_green", "stretching",   "rotation",
+                      "shear",   "sound_wave",   "standing_wave"};
 }
 constexpr auto enumNames(StartPlaces) { return std::array{"lattice", "relaxed"}; }
 constexpr auto enumNames(StartPressure) { return std::array{"none", "hydrostatic"}; }
@@ -136,7 +138,9 @@ void visitMember(B& b, const std::string& at, Visitor&& visit) {
             "", 0, 0,
             "velocity at the start: the same everywhere, or a flow of that amplitude: Taylor-Green "
             "vortices as wide as the domain; a sound wave as long as the domain that travels along "
-            "x; stretching along x, rotation or shear in x and y, "
+            "x; a standing wave, as long as the domain, of the surface above the body's floor, "
+            "deep "
+            "water's; stretching along x, rotation or shear in x and y, "
             "about the body's centre, with that speed at the end of its largest half side",
             Restart});
     visit(at + ".pressure", b.pressure,
@@ -174,6 +178,11 @@ void visitMember(S& s, const std::string& at, Visitor&& visit) {
           Knob{"kg/m³", 0, 1e5f,
                "lets it float: fluid, gravity and what it touches move it, velocity and spin are "
                "those at the start; 0 = it moves as prescribed",
+               Restart});
+    visit(at + ".slip", s.slip,
+          Knob{"m", -1, 1e6f,
+               "Navier's slip length of its surface, 0 = fluid sticks to it, -1 = fluid slides "
+               "freely",
                Restart});
     visit(at + ".friction", s.friction,
           Knob{"", 0, 10,
@@ -437,6 +446,16 @@ template <class S, class Visitor> void visitPhysics(S& s, Visitor&& visit) {
           Knob{"", 0, 0, "slides with walls.velocity and drags the fluid", Restart});
     visit("walls.velocity", s.walls.velocity,
           Knob{"m/s", -1e3f, 1e3f, "of the moving face, along itself"});
+    visit("walls.slip", s.walls.slip,
+          Knob{"m", -1, 1e6f,
+               "Navier's slip length of all faces: how far behind them the fluid's velocity would "
+               "be theirs; 0 = it sticks, -1 = it slides freely"});
+    visit("walls.slip_min", s.walls.slipMin,
+          Knob{"m", -1, 1e6f,
+               "the same of the faces at x_min, y_min and z_min; the one that lets fluid slip more "
+               "counts"});
+    visit("walls.slip_max", s.walls.slipMax,
+          Knob{"m", -1, 1e6f, "the same of the faces at x_max, y_max and z_max"});
 
     visit("time.mode", s.time.mode,
           Knob{"", 0, 0,
@@ -478,6 +497,13 @@ template <class S, class Visitor> void visitFluid(S& s, Visitor&& visit) {
     visit("fluid.speed_ratio", f.speedRatio,
           Knob{"", 1, 100, "speed of sound / largest expected speed"});
     visit("fluid.viscosity", f.viscosity, Knob{"Pa s", 0, 1000, "dynamic viscosity, 0 = off"});
+    visit("fluid.viscosity_form", f.viscosityForm,
+          Knob{"", 0, 0,
+               "sum that stands for viscosity: morris, along the difference of velocities, which "
+               "drags fluid at free surfaces; monaghan, along the line between particles, which "
+               "doesn't and keeps angular momentum; auto = morris in transport_velocity, else "
+               "monaghan",
+               Restart});
     visit("fluid.artificial_viscosity", f.artificialViscosity,
           Knob{"", 0, 2, "alpha of Monaghan's artificial viscosity, 0 = off"});
     visit("fluid.density_diffusion", f.densityDiffusion,

@@ -25,6 +25,14 @@ Start soundWave(const Scene& scene, double amplitude, Vec3d p) {
     return {{u, 0, 0}, scene.fluid.restDensity * soundSpeed(scene, {}) * u};
 }
 
+// Deep or shallow water over a floor that it slides on, one wave length in the domain, when the
+// surface is level: largest speed U up and down at the surface.
+Start standingWave(const Scene& scene, const Body& body, double amplitude, Vec3d p, Vec3d r) {
+    const double k = 2 * std::numbers::pi / scene.domain.size().x, half = halfExtent(body).y,
+                 u = amplitude / std::sinh(2 * k * half), up = k * (r.y + half);
+    return {u * Vec3d{std::sin(k * p.x) * std::cosh(up), -std::cos(k * p.x) * std::sinh(up), 0}};
+}
+
 // Linear in the distance from the body's centre. A stretching drop in a central force field has its
 // exact pressure (Monaghan and Rafiee 2013), which is 0 on its surface.
 Start linearField(const Scene& scene, const Body& body, double amplitude, Vec3d r) {
@@ -62,6 +70,8 @@ Start startOf(const Scene& scene, const Body& body, Vec3d p) {
         start = taylorGreen(scene, amplitude, p);
     else if (body.field == Field::SoundWave)
         start = soundWave(scene, amplitude, p);
+    else if (body.field == Field::StandingWave)
+        start = standingWave(scene, body, amplitude, p, r);
     else if (body.field != Field::Uniform)
         start = linearField(scene, body, amplitude, r);
     if (body.pressure == StartPressure::Hydrostatic) start.pressure += hydrostatic(scene, body, r);

@@ -32,10 +32,13 @@ public:
                 {normalLength_.data()},
                 {density_.data()},
                 {inverseDensity_.data()},
+                {weighsViscosity_ ? viscousVolume_.data() : inverseDensity_.data()},
                 {pressureTerm_.data()},
                 {mass_.data()},
                 {outward_.data()},
                 {ownVelocity_.data()},
+                {slip_.data()},
+                {slipVelocity_.data()},
                 {densityRate_.data()},
                 {shiftVelocity_.data()},
                 {shiftAcceleration_.data()},
@@ -140,6 +143,8 @@ public:
         return isNew;
     }
     void move() { moves_ = true, resize(slots_); }
+    void letSlip() { slips_ = true, resize(slots_); }
+    bool slips() const { return slips_; }
     void haveDensity() { hasDensity_ = true, resize(slots_); }
     // Fluid's density comes from a sum, or goes from step to step with a rate; with shifting its
     // particles leave the fluid's paths.
@@ -148,6 +153,11 @@ public:
     // What integrators need besides: a velocity, or all of a state.
     void keepVelocity() { keepsVelocity_ = true; }
     void keepState() { keepsVelocity_ = keepsState_ = true; }
+    void weighViscosity(bool weighs) {
+        weighsViscosity_ = weighs;
+        if (!weighs) viscousVolume_.release();
+        resize(slots_);
+    }
     // Where each began its step, for collisions.
     void keepPlace() { keepsPlace_ = true; }
     // Sums of pairs for forces that come on top of the others; normals of the surface.
@@ -241,12 +251,14 @@ private:
             mass_.resize(slots);
             if (carriesVelocity_) outward_.resize(vectorSize(slots));
             if (moves_) ownVelocity_.resize(vectorSize(slots));
+            if (slips_) slip_.resize(slots), slipVelocity_.resize(vectorSize(slots));
             return;
         }
         acceleration_.resize(vectorSize(slots));
         if (addsPairs_) addedForce_.resize(vectorSize(slots));
         if (hasNormals_) normal_.resize(vectorSize(slots)), normalLength_.resize(slots);
         inverseDensity_.resize(slots);
+        if (weighsViscosity_) viscousVolume_.resize(slots);
         if (carriesDensity_) densityRate_.resize(slots);
         if (mixture_) massRatio_.resize(slots), viscosity_.resize(slots);
         if (shifts_)
@@ -319,9 +331,9 @@ private:
     Device& device_;
     Kind kind_;
     bool carriesVelocity_ = kind_ == Kind::Fluid, hasDensity_ = kind_ == Kind::Fluid,
-         carriesDensity_ = false, shifts_ = false, moves_ = false, keepsVelocity_ = false,
-         keepsState_ = false, keepsPlace_ = false, stepsLocally_ = false, addsPairs_ = false,
-         hasNormals_ = false, mixture_ = false;
+         carriesDensity_ = false, shifts_ = false, moves_ = false, slips_ = false,
+         keepsVelocity_ = false, keepsState_ = false, keepsPlace_ = false, stepsLocally_ = false,
+         addsPairs_ = false, hasNormals_ = false, mixture_ = false, weighsViscosity_ = false;
     int slots_ = 0, side_ = 0;
     Buffer<int, Device> id_{device_}, sortedId_{device_}, key_{device_}, order_{device_},
         cellStart_{device_};
@@ -338,7 +350,8 @@ private:
     Buffer<real, Device> level_{device_}, sortedLevel_{device_}, sortedAcceleration_{device_},
         sortedDensityRate_{device_};
     Buffer<real, Device> density_{device_}, inverseDensity_{device_}, pressureTerm_{device_},
-        mass_{device_}, outward_{device_}, ownVelocity_{device_};
+        mass_{device_}, outward_{device_}, ownVelocity_{device_}, slip_{device_},
+        slipVelocity_{device_}, viscousVolume_{device_};
 };
 
 }  // namespace spindrift::LANES

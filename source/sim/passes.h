@@ -141,7 +141,9 @@ struct ApplyEquationOfState {
 // x_f)) W / sum_f W, Adami 2012, eq. 27, without the wall's acceleration. With `sticks` also the
 // velocity that makes it the wall's own at the wall, along a straight line from the mean of the
 // fluid nearby (Adami 2012 takes both sides as equally far, as Morris 1997 does not); with `dense`
-// the density of that pressure, for its gradient.
+// the density of that pressure, for its gradient. Where walls let fluid slip, that line reaches the
+// wall's velocity the slip length behind its surface (Navier 1823), along it: with an endless one
+// fluid slides freely.
 template <class Kernel, bool sticks, bool dense> struct ExtrapolateToWalls {
     using Index = Group;
     using R = Real<Group>;
@@ -181,9 +183,67 @@ template <class Kernel, bool sticks, bool dense> struct ExtrapolateToWalls {
     // as the wall's particle.
     HD void storeVelocity(Group b, Vector<R> wall, Vector<R> fluid, Vector<R> out, R apart) const {
         const R depth2 = dot(out, out);
-        const R ratio = depth2 / max(apart - depth2, max(depth2 * R(real(1) / 3), R(real(1e-20))));
-        store(v.walls.velocity, b, addScaled(wall, ratio, wall - fluid));
+        const R away = max(apart - depth2, max(depth2 * R(real(1) / 3), R(real(1e-20))));
+        const R ratio = depth2 / away;
+        const Vector<R> slower = wall - fluid;
+        if (v.walls.slip.data) return slip(b, wall, slower, out, ratio, away);
+        store(v.walls.velocity, b, addScaled(wall, ratio, slower));
     }
+    // `away` is the fluid's distance from the surface times the length of `out`.
+    HD void slip(Group b, Vector<R> wall, Vector<R> slower, Vector<R> out, R ratio, R away) const {
+        const R stored = load(v.walls.slip, b), zero = 0;
+        const R depth2 = max(dot(out, out), R(real(1e-20))), depth = squareRoot(depth2);
+        const R length = max(stored, zero - stored), reach = away / depth + length;
+        auto part = [&](R along, R out) LANE_CALL { return select(out * out > zero, along, zero); };
+        const Vector<R> across = (dot(slower, out) / depth2) * out;
+        const auto ofBox = stored < zero;
+        const Vector<R> normal{select(ofBox, part(slower.x, out.x), across.x),
+                               select(ofBox, part(slower.y, out.y), across.y),
+                               select(ofBox, part(slower.z, out.z), across.z)};
+        const Vector<R> along = slower - normal;
+        store(v.walls.velocity, b,
+              addScaled(addScaled(wall, ratio, normal), (depth - length) / reach, along));
+        store(v.walls.slipVelocity, b, subtractScaled(wall, length / reach, along));
+    }
+};
+
+// How much viscosity along the lines of pairs finds around a particle, sum_j g d^4, in comparison
+// with a point of the lattice: half at a flat surface. Each pair counts 1 / root of both, so that a
+// particle loses what fluid all around it would (that of uniform stretching, exactly so at flat
+// surfaces) and both still feel the opposite. Drops are not stiffened without an end: a particle
+// counts four times at most.
+template <class Kernel, Lists which> struct WeighViscosity {
+    using Index = Group;
+    using R = Real<Group>;
+    View v;
+    HD void operator()(Group i) const {
+        const Vector<R> x = load(v.fluid.position, i);
+        R fluid = 0;
+        forNeighbours<lists>(v, v.fluidNearFluid, i, x,
+                             [&](const auto& p, Four) LANE_CALL { fluid += weight(p.q); });
+        finish(i, x, total(fluid));
+    }
+    HD static R weight(R q) {
+        const R q2 = q * q;
+        return q2 * q2 * viscous<Kernel>(q);
+    }
+    HD void finish(Group i, Vector<R> x, R fluid) const {
+        R walls = 0;
+        forNeighbours<lists>(v, v.wallsNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
+            walls = mulAdd(load(v.walls.mass, j), weight(p.q), walls);
+        });
+        const R around = max(R(v.c.perSurroundings) * (fluid + total(walls)), R(real(0.25)));
+        store(v.fluid.viscousVolume, i, R(1 / v.c.restDensity) / squareRoot(around));
+    }
+    // For lists with each pair once (PairSums).
+    static constexpr Lists lists = which;
+    static constexpr uint8_t dueFrom = NotDue;
+    static constexpr bool opposite = false;
+    struct Nothing {};
+    HD ScalarField field() const { return v.fluid.viscousVolume; }
+    template <class I> HD Nothing state(I) const { return {}; }
+    HD R of(const Pair<R>& p, Nothing, Nothing) const { return weight(p.q); }
+    HD void finish(Group i) const { finish(i, load(v.fluid.position, i), load(field(), i)); }
 };
 
 // The moments of a particle's neighbours, M = -sum_j V_j r grad W, which is 1 on a lattice, and
@@ -291,7 +351,9 @@ HD inline Vector<R> hydrostaticSlope(const Constants& c, Vector<real> gravityNow
 }
 
 // d rho/dt = -rho div u + delta h c 2 sum_j V_j (rho_j - rho_i - rho_H) (-F), Molteni & Colagrossi
-// 2009, without the difference rho_H that hydrostatic pressure makes (Fourtakas 2019).
+// 2009, without the difference rho_H that hydrostatic pressure makes (Fourtakas 2019). Velocities
+// are of the middle of a step, places of its beginning; so pairs are seen from where they will be
+// in its middle. (Without that, fluid that turns as a solid is compressed, by omega^2 dt a second.)
 template <class Kernel> struct ComputeDensityRate {
     using Index = Group;
     using R = Real<Group>;
@@ -308,9 +370,11 @@ template <class Kernel> struct ComputeDensityRate {
             slope = ratio * slope, diffusion = diffusion / squareRoot(ratio);
         }
         R sum = 0;
+        const R ahead = v.c.rateAhead * real(v.state->dt);
         forNeighbours<Lists::Pruned>(
             v, v.fluidNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
-                const R approach = rho * dot(u - load(v.fluid.velocity, j), p.r);
+                const Vector<R> apart = u - load(v.fluid.velocity, j);
+                const R approach = rho * dot(apart, addScaled(p.r, ahead, apart));
                 const R excess = load(v.fluid.density, j) - rho + dot(slope, p.r);
                 sum = mulAdd(Kernel::g(p.q) * load(v.fluid.inverseDensity, j),
                              negMulAdd(diffusion, excess, approach), sum);
@@ -318,8 +382,9 @@ template <class Kernel> struct ComputeDensityRate {
         R walls = 0;
         forNeighbours<Lists::Pruned>(
             v, v.wallsNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
+                const Vector<R> apart = u - surfaceVelocity(v.walls, j);
                 walls = mulAdd(Kernel::g(p.q) * load(v.walls.mass, j),
-                               dot(u - ownVelocity(v.walls, j), p.r), walls);
+                               dot(apart, addScaled(p.r, ahead, apart)), walls);
             });
         const R perRest = 1 / v.c.restDensity;
         store(v.fluid.densityRate, i,
@@ -373,12 +438,13 @@ template <class Kernel, bool surface> struct ComputeTransport {
                       load(v.fluid.velocity, j) - own, more,
                       surface ? more + dot(slope, p.r) : more, crowding(p.q));
             });
-        forNeighbours<Lists::Pruned>(
-            v, v.wallsNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
-                const R more = load(v.walls.density, j) - rho;
-                s.add(Kernel::g(p.q) * load(v.walls.mass, j) * perRest, p.r,
-                      ownVelocity(v.walls, j) - own, more, surface ? R(0) : more, crowding(p.q));
-            });
+        forNeighbours<Lists::Pruned>(v, v.wallsNearFluid, i, x,
+                                     [&](const auto& p, Four j) LANE_CALL {
+                                         const R more = load(v.walls.density, j) - rho;
+                                         s.add(Kernel::g(p.q) * load(v.walls.mass, j) * perRest,
+                                               p.r, surfaceVelocity(v.walls, j) - own, more,
+                                               surface ? R(0) : more, crowding(p.q));
+                                     });
         finish(i, rho, s);
     }
     // Sun 2019: 1 + 0.2 (W / W(dx))^4 keeps particles from pairing.

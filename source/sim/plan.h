@@ -91,6 +91,10 @@ void SimulationOn<Device>::evaluateForces(Initial initial) {
         ? addPass("equation of state", &S::template onFluid<ApplyEquationOfState>, initial)
         : addPass("density", pairPass<ComputeDensity<K>>(), initial);
     addPass("walls", wallPass<K>(), initial, whyNoWallPressure());
+    addPass("surroundings",
+            carriesDensity(scene_) ? &S::template onFluid<WeighViscosity<K, Lists::All>>
+                                   : pairPass<WeighViscosity<K, Lists::Pruned>>(),
+            initial, whyViscosityIsNotWeighed());
     addPass("forces", forcePass<K>(), initial);
     const char* noTension = scene_.fluid.surfaceTension > 0 ? "" : "fluid.surface_tension is 0";
     addPass("normals", &S::template onFluid<ComputeNormals>, initial, noTension);
@@ -166,46 +170,52 @@ template <class Device> template <class K> auto SimulationOn<Device>::wallPass()
 template <class Device> template <class K> auto SimulationOn<Device>::forcePass() const
     -> PassFunction {
     if (fillsSpace())
-        return *LaminarViscosity::skipped(scene_)
-                   ? forces<K, Lists::Prune>(TermList<CorrectedPressureForce>{})
-                   : forces<K, Lists::Prune>(TermList<CorrectedPressureForce, LaminarViscosity>{});
-    if (scene_.time.integrator == Integrator::Split) return forces<K, Lists::Prune>(Viscosities{});
+        return chooseTerms(
+            scene_, [](auto terms) { return forces<K, Lists::Prune>(terms); },
+            TermList<CorrectedPressureForce>{},
+            TermList<LaminarViscosity<ViscosityForm::Morris>>{});
+    if (scene_.simulation.formulation == Formulation::Classic)
+        return chooseTerms(
+            scene_, [](auto terms) { return forces<K, Lists::Pruned>(terms); },
+            TermList<PressureForce>{}, TermList<ClassicViscosity>{});
+    return withViscosityForm(scene_, [this](auto form) { return forcesOf<K, form.value>(); });
+}
+
+template <class Device> template <class K, ViscosityForm form>
+auto SimulationOn<Device>::forcesOf() const -> PassFunction {
+    if (scene_.time.integrator == Integrator::Split)
+        return forces<K, Lists::Prune>(Viscosities<form>{});
     if (isMixture(scene_)) {
-        using Terms = TermList<PressureForce, MixtureViscosity>;
+        using Terms = TermList<PressureForce, MixtureViscosity<form>>;
         return carriesDensity(scene_) ? forces<K, Lists::Prune>(Terms{})
                                       : pairPass<ComputeForces<K, Lists::Pruned, Terms>>();
     }
     if (carriesDensity(scene_))
         return chooseTerms(
             scene_, [](auto terms) { return forces<K, Lists::Prune>(terms); },
-            TermList<PressureForce>{}, Viscosities{});
-    if (scene_.simulation.formulation == Formulation::Classic)
-        return chooseTerms(
-            scene_, [](auto terms) { return forces<K, Lists::Pruned>(terms); },
-            TermList<PressureForce>{}, TermList<ClassicViscosity>{});
+            TermList<PressureForce>{}, Viscosities<form>{});
     if (scene_.simulation.pressureForm == PressureForm::Mean)
-        return pairPass<
-            ComputeForces<K, Lists::Pruned,
-                          TermList<MeanPressureForce, LaminarViscosity, ArtificialViscosity>>>();
+        return pairPass<ComputeForces<
+            K, Lists::Pruned,
+            TermList<MeanPressureForce, LaminarViscosity<form>, ArtificialViscosity>>>();
     return chooseTerms(
         scene_,
         [this](auto terms) { return pairPass<ComputeForces<K, Lists::Pruned, decltype(terms)>>(); },
-        TermList<PressureForce>{}, Viscosities{});
+        TermList<PressureForce>{}, Viscosities<form>{});
 }
 
 // What fluid does to solids, by the terms that act on the fluid. (Corrected gradients have no
 // opposite: their pressure is taken as it is without.)
 template <class Device> template <class K> auto SimulationOn<Device>::loadPass() const
     -> PassFunction {
-    using Mixed = TermList<PressureForce, MixtureViscosity>;
-    if (isMixture(scene_)) return &SimulationOn::template findLoads<ComputeWallLoads<K, Mixed>>;
-    return chooseTerms(
-        scene_,
-        [](auto terms) {
-            return PassFunction(
-                &SimulationOn::template findLoads<ComputeWallLoads<K, decltype(terms)>>);
-        },
-        TermList<PressureForce>{}, Viscosities{});
+    auto pass = [](auto terms) {
+        return PassFunction(
+            &SimulationOn::template findLoads<ComputeWallLoads<K, decltype(terms)>>);
+    };
+    return withViscosityForm(scene_, [&](auto form) {
+        if (isMixture(scene_)) return pass(TermList<PressureForce, MixtureViscosity<form.value>>{});
+        return chooseTerms(scene_, pass, TermList<PressureForce>{}, Viscosities<form.value>{});
+    });
 }
 
 template <class Device> template <class K> auto SimulationOn<Device>::ratePass() const

@@ -231,6 +231,7 @@ private:
         scene_ = scene;
         if (pairsOnce() != before) travel_ = 1e30;  // other lists
         const bool sticksNow = fluidSticks() && walls_.carryVelocity();
+        if (letsSlip(scene)) walls_.letSlip();
         withKernel(scene_.simulation.kernel, [&](auto kernel) {
             using K = decltype(kernel);
             constants_ = makeConstants<K>(scene_, extent_);
@@ -241,12 +242,15 @@ private:
         });
         if (solids_.anyThin()) solids_.screen(constants_);
         addBuffers();
+        fluid_.weighViscosity(!*whyViscosityIsNotWeighed());
         fluid_.stepLocally(hasLocalSteps());
         walls_.stepLocally(hasLocalSteps());
         if (hasLocalSteps() && !localSteps_.used())
             localSteps_.resize(grid_, real(2 * supportRadius(scene_) * (1 + scene_.compute.skin)));
-        // A face slides at another speed, or walls are to know which way they face.
-        if (sticksNow || (wallsMove() && !solids_.moves())) solids_.placeWalls(view());
+        // A face slides at another speed or lets fluid slip, or walls are to know which way they
+        // face.
+        if (sticksNow || ((wallsMove() || walls_.slips()) && !solids_.moves()))
+            solids_.placeWalls(view());
         outdateRecordings();
     }
     void outdateRecordings() {
@@ -265,6 +269,7 @@ private:
     template <class K> void stepLocally();
     template <class K> PassFunction wallPass() const;
     template <class K> PassFunction forcePass() const;
+    template <class K, ViscosityForm form> PassFunction forcesOf() const;
     template <class K> PassFunction loadPass() const;
     template <class K> PassFunction ratePass() const;
     void addPass(const char* name, PassFunction run, Initial initial = Initial::No,
@@ -297,10 +302,22 @@ private:
     bool fluidSticks() const {
         const bool asked =
             isMixture(scene_) || scene_.simulation.pressureForm == PressureForm::Mean;
-        return wallsCarryPressure() && (asked || largestViscosity(scene_) > 0);
+        return wallsCarryPressure() && (asked || largestViscosity(scene_) > 0 || letsSlip(scene_));
     }
     template <class... Ts> void noteTerms(TermList<Ts...>) {
         (rows_.push_back({std::string("forces: ") + Ts::name, Ts::skipped(scene_)}), ...);
+    }
+    // Where it is less than what keeps fluid calm anyway, nobody can tell.
+    const char* whyViscosityIsNotWeighed() const {
+        if (largestViscosity(scene_) <= 0 || scene_.simulation.formulation == Formulation::Classic)
+            return "there is no laminar viscosity";
+        if (viscosityForm(scene_) != ViscosityForm::Monaghan)
+            return "only Monaghan's form of viscosity asks for it";
+        if (hasLocalSteps()) return "steps are local (time.mode)";
+        const double nu = largestViscosity(scene_) / scene_.fluid.restDensity,
+                     reach = double(constants_.soundSpeed) * double(constants_.support),
+                     numerical = std::max(1e-3, scene_.fluid.artificialViscosity / 16.0) * reach;
+        return nu < numerical ? "viscosity is less than 1e-3 c R, or than the artificial one" : "";
     }
     const char* whyNoObjects() const { return objects_.count() > 0 ? "" : "there are no objects"; }
     const char* whyNothingFloats() const {

@@ -7,7 +7,9 @@
 #include "scene/lattice.h"
 #include "scene/mass.h"
 #include "scene/motion.h"
+#include "scene/sample_solid.h"
 #include "scene/thin_solid.h"
+#include "sim/constants.h"
 #include "sim/neighbours.h"
 #include "sim/rigid.h"
 #include "sim/terms.h"
@@ -150,19 +152,29 @@ struct PlaceWalls {
     HD void placeOfDomain(int i) const {
         const Vector<real> x = load(v.walls.position, i);
         auto beyond = [](real at, real end) LANE_CALL { return at - max(min(at, end), real(0)); };
-        finish(i, {beyond(x.x, home.size.x), beyond(x.y, home.size.y), beyond(x.z, home.size.z)},
-               wallVelocity(v.c, x));
+        const Vector<real> out{beyond(x.x, home.size.x), beyond(x.y, home.size.y),
+                               beyond(x.z, home.size.z)};
+        // In an edge, of the face that lets fluid slip the least.
+        real slip = real(1e9);
+        auto take = [&](real out, real below, real above) LANE_CALL {
+            if (out != 0) slip = min(slip, out < 0 ? below : above);
+        };
+        take(out.x, v.c.slipBelow.x, v.c.slipAbove.x);
+        take(out.y, v.c.slipBelow.y, v.c.slipAbove.y);
+        take(out.z, v.c.slipBelow.z, v.c.slipAbove.z);
+        finish(i, out, wallVelocity(v.c, x), -slip);
     }
     HD void placeOfSolid(int i, int k, const SolidState& s) const {
         const Vector<real> own = load(home.position, k) - s.home, arm = turned(s, own);
         Vector<real> normal{0, 0, 0};
         const real distance = surface(s, own, normal);
         store(v.walls.position, i, intoDomain(v.c, s.middle + arm));
-        finish(i, distance * turned(s, normal), s.velocity + cross(s.spin, arm));
+        finish(i, distance * turned(s, normal), s.velocity + cross(s.spin, arm), s.slip);
         if (s.grace > 0 && v.walls.outward.data)
             store(v.walls.outward, i, turned(s, load(home.face, k)));
     }
-    HD void finish(int i, Vector<real> outward, Vector<real> velocity) const {
+    HD void finish(int i, Vector<real> outward, Vector<real> velocity, real slip) const {
+        if (v.walls.slip.data) store(v.walls.slip, i, slip);
         if (v.walls.outward.data) store(v.walls.outward, i, outward);
         if (v.walls.ownVelocity.data) store(v.walls.ownVelocity, i, velocity);
     }
@@ -354,6 +366,7 @@ inline SolidState solidAtHome(const Scene& scene, const Solid& solid) {
     s.planes = shape.planes;
     for (int k = 0; k < shape.planes; ++k)
         s.normal[k] = toReal(shape.normal[k]), s.offset[k] = real(shape.offset[k]);
+    s.slip = slipLength(solid.slip);
     s.radius = real(shape.radius), s.across = toReal(shape.across);
     s.reach = solid.shape == Shape::Plane ? real(1e9) : real(reachOf(solid));
     return s;

@@ -26,11 +26,17 @@ struct Particles {
     ScalarField normalLength;  // 1/m, |sum_j V grad W|
     ScalarField density;  // kg/m³; of boundary particles only where density gradients are wanted
     ScalarField inverseDensity;  // m^3/kg
+    ScalarField viscousVolume;   // m^3/kg, 1/rho as viscosity along lines of pairs counts it: more
+                                 // where neighbours are missing, if that is found out
     ScalarField pressureTerm;    // p / rho^2
     ScalarField mass;            // boundary particles only (Akinci 2012): m_b / m
     VectorField outward;  // m, boundary particles only: from the nearest point of their surface,
                           // where fluid sticks to it
     VectorField ownVelocity;    // m/s, boundary particles only: of the wall itself, where any moves
+    ScalarField slip;           // m, of boundary particles where any wall lets fluid slip: Navier's
+                                // length; negative of the domain's faces, across which velocities
+                                // are components
+    VectorField slipVelocity;   // m/s, and of the fluid at their surface
     ScalarField densityRate;    // kg/(m^3 s), where density is carried
     VectorField shiftVelocity;  // m/s, where particles are shifted: how much faster than the fluid
                                 // they move,
@@ -155,8 +161,10 @@ struct Constants {
     real shifting;            // shift velocity per largest speed, m
     real shiftWeight;         // 1 / w at the distance of neighbours on the lattice
     int dimensions;
-    real flatMoment;            // what makes moments in two dimensions invertible: 1, otherwise 0
-    real laminar;               // 2 mu, Pa s, for the kernel's own sums of Laplacians
+    real flatMoment;  // what makes moments in two dimensions invertible: 1, otherwise 0
+    real laminar;     // 2 mu, Pa s, for the kernel's own sums of Laplacians; over s^2 in Monaghan's
+                      // form
+    real perSurroundings;       // 1 / what WeighViscosity sums up around a lattice point
     real artificial;            // alpha c h / 2, m^2/s
     real classicViscosity;      // nu m / (rho0 pi R^5) in units of gradientScale
     real surfaceTension;        // 2 sigma / rho0, m³/s^2
@@ -176,8 +184,10 @@ struct Constants {
     Vector<real> center;        // m
     Vector<real> slidesBelow, slidesAbove;  // m: boundary particles below or above these slide with
     Vector<real> slideVelocity;             // m/s
-    real solidSpeed;                        // m/s, the most that any solid reaches
-    real gap;  // m: who was stopped by a solid is so far off, which is more than rounding
+    Vector<real> slipBelow, slipAbove;      // m, Navier's lengths of the faces at 0 and at the end
+    real rateAhead;   // steps, from the places of which the rate of density is to those it is for
+    real solidSpeed;  // m/s, the most that any solid reaches
+    real gap;         // m: who was stopped by a solid is so far off, which is more than rounding
     Vector<real> low, high;              // m, the box that positions stay in
     Vector<real> period, inversePeriod;  // m, 1/m, of periodic axes; 0 for the others
     bool periodic;                       // any of them
@@ -204,6 +214,7 @@ struct SolidState {
     Vector<real> normal[Convex::mostPlanes];
     real offset[Convex::mostPlanes];
     real radius;
+    real slip;  // m, Navier's length
     Vector<real> across;
     real reach;  // m, from its middle to its farthest point
     real grace;  // m, 0: it is not thin; otherwise what goes no deeper into it does not cross it
@@ -272,6 +283,10 @@ template <class I> HD inline Real<I> massRatio(const Particles& fluid, I i) {
 template <class I> HD inline Vector<Real<I>> ownVelocity(const Particles& walls, I b) {
     using R = Real<I>;
     return walls.ownVelocity.data ? load(walls.ownVelocity, b) : Vector<R>{R(0), R(0), R(0)};
+}
+// The same, along the wall that of the fluid at its surface, where that may slip.
+template <class I> HD inline Vector<Real<I>> surfaceVelocity(const Particles& walls, I b) {
+    return walls.slipVelocity.data ? load(walls.slipVelocity, b) : ownVelocity(walls, b);
 }
 
 // Of the domain's walls at one of their particles, m/s.

@@ -50,6 +50,8 @@ const char* whyRestIsIdle(const Scene& s, const std::string& path) {
     const bool soundIsKnown = s.fluid.soundSpeed > 0 || s.fluid.stiffness > 0;  // else it follows
     if (path == "walls.velocity" && s.walls.movingFace == Face::None && soundIsKnown)
         return "walls.moving_face is none";
+    const bool sticks = largestViscosity(s) > 0 || s.fluid.artificialViscosity > 0;
+    if (path.starts_with("walls.slip") && !sticks) return "nothing sticks to walls: no viscosity";
     if (path.starts_with("contact.") && s.objects.empty()) return "there are no elastic objects";
     if (path.starts_with("view.range_") && s.view.range != RangeMode::Fixed)
         return "view.range is not fixed";

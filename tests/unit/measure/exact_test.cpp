@@ -74,6 +74,28 @@ TEST(Exact, DropComesBackAfterItsPeriod) {
     EXPECT_NEAR(most, 1.931852, 1e-4);
 }
 
+// Where viscosity is weak all is lost where potential flow shears: 2 nu k^2 of waves on deep water,
+// 2 n (n - 1) nu / R^2 of drops (Lamb 1932); what vorticity below the surface changes goes with the
+// root of the viscosity.
+TEST(Exact, WeakViscosityDampsAsLambSays) {
+    const double k = 3, g = 9.81, R = 0.5, Omega = 2;
+    double before = 1;
+    for (const double nu : {1e-5, 1e-6, 1e-7}) {
+        const std::complex<double> wave = viscousWave(k, 100, g, nu);
+        EXPECT_NEAR(wave.imag(), std::sqrt(g * k), 1e-4);
+        const double missing = 1 - wave.real() / (-2 * nu * k * k);
+        EXPECT_GT(missing, 0);
+        EXPECT_NEAR(missing / before, std::sqrt(0.1), before < 1 ? 0.02 : 1);
+        before = missing;
+    }
+    for (const int n : {2, 3}) {
+        const double nu = 1e-4;
+        const std::complex<double> drop = viscousDrop(n, R, Omega, nu);
+        EXPECT_NEAR(drop.imag(), std::sqrt(n) * Omega, 1e-3);
+        EXPECT_NEAR(drop.real() / (-2 * n * (n - 1) * nu / (R * R)), 1, 0.02 * n);
+    }
+}
+
 // In oil as thick as this drag is as the speed: v = terminal (1 - exp(-t / T)).
 TEST(Exact, SpheresSink) {
     SettlingSphere sphere{0.01, 2000, 1000, 1000, 10, 0.05};

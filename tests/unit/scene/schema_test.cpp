@@ -125,8 +125,8 @@ struct Change {
         if (path.ends_with(".motion")) return;  // is read and forgotten
         v += " \"new\" \\ \n\t \xc3\xbc // no comment";
     }
-    void operator()(const std::string&, Vec3& v, const Knob&) const {
-        v = v + Vec3{0.1f, 1e-7f, -12.3456789f};
+    void operator()(const std::string&, Vec3& v, const Knob& k) const {
+        v = v + Vec3{0.1f, 1e-7f, std::max(-12.3456789f, 0.7f * k.min)};
     }
     void operator()(const std::string&, Vec3d& v, const Knob&) const {
         v = v + Vec3d{0.1, 1e-17, -500123.45678901234};

@@ -51,7 +51,7 @@ Scene emptyBox(float support, Kernel kernel) {
     s.walls.kind = WallKind::Reflect;
     s.fluid.particleMass = 0.1f;
     s.fluid.soundSpeed = 20;
-    s.fluid.viscosity = 3;
+    s.fluid.viscosity = 100;
     s.fluid.artificialViscosity = 0.2f;
     return s;
 }
@@ -160,6 +160,15 @@ struct BruteForce {
                     m / std::pow(R, dim) * w(s.simulation.kernel, length(apart(i, j)) / R, dim);
         // What forces divide by.
         auto dense = [&](size_t i) { return std::max(rho[i], 0.8 * rho0); };
+        // What viscosity as strong as here takes for 1 / rho.
+        std::vector<double> counted;
+        for (size_t i = 0; i < n; ++i) {
+            double around = 0;
+            for (size_t j = 0; j < n; ++j)
+                if (const double q = length(apart(i, j)) / R; q < 1)
+                    around += std::pow(q, 4) * slope(s.simulation.kernel, q, dim);
+            counted.push_back(1 / rho0 / std::sqrt(std::max(around / moments.surroundings, 0.25)));
+        }
         auto term = [&](size_t i) {
             return std::max(0.0, k * (std::pow(rho[i] / rho0, s.fluid.gamma) - 1)) /
                    (dense(i) * dense(i));
@@ -176,13 +185,15 @@ struct BruteForce {
                 const double meet = std::min(0.0, dot(u, r)) / (d * d + 0.01 * h * h);
                 const double artificial = s.fluid.artificialViscosity * c * h * meet * 0.5 *
                                           (1 / dense(i) + 1 / dense(j));
-                const double laminar = 2 * s.fluid.viscosity / (dense(i) * dense(j)) * F;
-                a[i] = a[i] + (artificial - term(i) - term(j)) * gradW + laminar * u;
+                const double laminar = 2 * s.fluid.viscosity * counted[i] * counted[j];
+                a[i] = a[i] + laminar * dot(u, r) / moments.squared * gradW;
+                a[i] = a[i] + (artificial - term(i) - term(j)) * gradW;
             }
     }
     // What the program divides by, so that on a lattice density and gradient are exact.
     struct Moments {
-        double kernel = 0, gradient = 0;
+        double kernel = 0, gradient = 0, squared = 0;  // m^2, of viscosity along the line of pairs
+        double surroundings = 0;
     };
     static Moments latticeMoments(const Scene& s) {
         const double ratio = s.simulation.support;
@@ -197,9 +208,14 @@ struct BruteForce {
                     const double value = scale / std::pow(ratio, dim);
                     m.kernel += value * w(s.simulation.kernel, r / ratio, dim);
                     if (r == 0 || r >= ratio) continue;
-                    m.gradient -=
-                        value * derivative(s.simulation.kernel, r / ratio, dim) / ratio * x * x / r;
+                    const double slope =
+                        value * derivative(s.simulation.kernel, r / ratio, dim) / ratio / r;
+                    m.gradient -= slope * x * x;
+                    m.surroundings +=
+                        std::pow(r / ratio, 3) * derivative(s.simulation.kernel, r / ratio, dim);
+                    m.squared -= slope * x * x * y * y;
                 }
+        m.squared *= std::pow(double(s.simulation.spacing), 2) / m.gradient;
         return m;
     }
 };

@@ -14,11 +14,11 @@ struct Expected {
 };  // bytes: a particle, at most
 
 const char* const Splash =
-    "sort neighbours density walls forces extremes time-step integrate laminar-viscosity "
+    "sort neighbours density walls forces extremes time-step integrate laminar-viscosity,-Monaghan "
     "artificial-viscosity";
 const char* const WithMovingSolids =
-    "solids sort neighbours density walls forces extremes time-step integrate laminar-viscosity "
-    "artificial-viscosity solid-collisions";
+    "solids sort neighbours density walls forces extremes time-step integrate "
+    "laminar-viscosity,-Monaghan artificial-viscosity solid-collisions";
 const char* const Classic =
     "sort neighbours density forces extremes time-step integrate classic-viscosity";
 const Expected Scenes[] = {
@@ -32,25 +32,26 @@ const Expected Scenes[] = {
     {"bowl", WithMovingSolids, 270},
     {"floating",
      "solids sort neighbours density walls forces solid-forces extremes time-step floating-solids "
-     "integrate laminar-viscosity artificial-viscosity "
+     "integrate laminar-viscosity,-Monaghan artificial-viscosity "
      "solid-collisions",
      300},
     {"artery",
      "solids sort neighbours density walls forces contact extremes time-step objects integrate "
-     "laminar-viscosity artificial-viscosity "
+     "laminar-viscosity,-Monaghan artificial-viscosity "
      "solid-collisions",
      400},
     {"oil_and_water",
-     "sort neighbours density walls forces extremes time-step integrate viscosities-of-a-mixture",
+     "sort neighbours density walls forces extremes time-step integrate "
+     "viscosities-of-a-mixture,-Monaghan",
      260},
     {"drops",
      "sort neighbours equation-of-state forces normals surface-tension extremes time-step kick "
-     "transport drift laminar-viscosity "
+     "transport drift laminar-viscosity,-Monaghan "
      "artificial-viscosity",
      500},
     {"poiseuille",
      "sort neighbours equation-of-state walls forces extremes time-step kick transport drift "
-     "laminar-viscosity",
+     "laminar-viscosity,-Morris",
      220},
     {"1", Classic, 120},
     {"2", Classic, 150},
