@@ -223,7 +223,8 @@ Packing::Packing(const Region& region, double spacing, int threads)
     const double radius = Radius * spacing;
     std::vector<Vec3d> outside;
     std::vector<double> volumes;
-    const double cell = forCells(region, spacing, radius, [&](Vec3d middle, Vec3d sides) {
+    const double width = region.dimensions == 2 ? spacing / 2 : spacing;  // finer where it is cheap
+    const double cell = forCells(region, width, radius, [&](Vec3d middle, Vec3d sides) {
         // What no particle can see is left out.
         if (region.isNear && !region.isNear(middle)) return;
         if (region.inside(middle, 2 * (radius + spacing)) <= 0) return;

@@ -6,9 +6,9 @@
 namespace spindrift {
 namespace {
 
-// m, below which the layers of both sides would meet.
+// m, below which fluid that stands half a spacing off each face would feel each other.
 double thickEnough(const Scene& scene) {
-    return (2 * boundaryLayers(scene) - 0.5) * double(scene.simulation.spacing);
+    return double(supportRadius(scene)) - double(scene.simulation.spacing);
 }
 
 // The axis along which a shape is the thinnest.

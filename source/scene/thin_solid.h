@@ -5,8 +5,8 @@
 
 namespace spindrift {
 
-// m, where a solid is thinner than the layers of boundary particles that its two sides need, and
-// too wide for fluid to feel its way around; otherwise 0.
+// m, of a solid through which fluid on its two sides would feel each other, and that is too wide
+// for fluid to feel its way around; otherwise 0.
 double thinness(const Scene&, const Solid&);
 
 // Whether the way from p to q, in the axes of the shape and from its middle, leads through it,

@@ -48,29 +48,43 @@ Shape2 shapeOf(const std::vector<Particle>& particles) {
     return {middle, x2 - y2, std::sqrt(2 * (x2 + y2)), farthest};
 }
 
-// Rayleigh 1879: omega^2 = 8 sigma / (rho r^3), in two dimensions 6.
-void expectRayleighsPeriod(int dimensions, double particles) {
-    const double period =
-        2 * std::numbers::pi /
-        std::sqrt((dimensions == 3 ? 8 : 6) * Tension / (Density * std::pow(Radius, 3)));
-    const auto simulation = makeSimulation(drop(dimensions, particles, 0.04f));
-    double before = 0, last = 0, half = 0;
-    while (half == 0 && last < period) {
+// s, of a swing: twice the time until it is a circle again.
+double periodOf(const Scene& scene, double expected) {
+    const auto simulation = makeSimulation(scene);
+    double before = 0, last = 0;
+    while (last < expected) {
         simulation->step(20);
         const double now = simulation->clock().time,
                      stretch = shapeOf(simulation->particles()).stretch;
-        if (now > period / 8 && stretch < 0)
-            half = last + (now - last) * before / (before - stretch);  // back at the circle
+        if (now > expected / 8 && stretch < 0)
+            return 2 * (last + (now - last) * before / (before - stretch));
         before = stretch, last = now;
     }
-    std::printf(
-        "drop, %d dimensions, %g particles along the radius: period %.4f s, Rayleigh's %.4f s\n",
-        dimensions, particles, 2 * half, period);
-    EXPECT_NEAR(2 * half, period, 0.08 * period);
+    return 0;
+}
+
+// Rayleigh 1879: omega^2 = 8 sigma / (rho r^3), in two dimensions 6. There the period depends on
+// how a drop happens to be packed, 2 to 13 % too long: the mean of some counts.
+void expectRayleighsPeriod(int dimensions, double particles, int packings) {
+    const double period =
+        2 * std::numbers::pi /
+        std::sqrt((dimensions == 3 ? 8 : 6) * Tension / (Density * std::pow(Radius, 3)));
+    Scene scene = drop(dimensions, particles, 0.04f);
+    double mean = 0;
+    for (int seed = 1; seed <= packings; ++seed) {
+        scene.simulation.seed = seed;
+        const double one = periodOf(scene, period);
+        std::printf(
+            "drop, %d dimensions, %g particles along the radius: period %.4f s, "
+            "Rayleigh's %.4f s\n",
+            dimensions, particles, one, period);
+        mean += one / packings;
+    }
+    EXPECT_NEAR(mean, period, 0.08 * period);
 }
 TEST(Drop, SwingsWithRayleighsPeriod) {
-    expectRayleighsPeriod(2, 25);
-    expectRayleighsPeriod(3, 12);
+    expectRayleighsPeriod(2, 25, 4);
+    expectRayleighsPeriod(3, 12, 1);
 }
 
 TEST(Drop, IsRoundAndPressesAsLaplaceSays) {

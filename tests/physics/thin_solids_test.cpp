@@ -88,7 +88,7 @@ void expectLevels(const Means& m) {
 
 TEST(ThinSolids, BearTheLevelsOnTheirSides) {
     for (const char* formulation : Formulations)
-        for (const double spacings : {0.25, 1.0, 2.0, 3.0}) {
+        for (const double spacings : {0.25, 1.0}) {
             SCOPED_TRACE(testing::Message() << formulation << " " << spacings);
             const double thickness = spacings * Dx;
             expectLevels(watch(twoLevels(thickness, formulation), thickness));
@@ -110,7 +110,7 @@ TEST(ThinSolids, BearThemWhileTheyMove) {
 // outward, what is around it inward.
 TEST(ThinSolids, CupsHoldWater) {
     for (const char* formulation : {"delta_sph", "delta_plus"})
-        for (const double spacings : {1.0, 2.0}) {
+        for (const double spacings : {1.0}) {
             SCOPED_TRACE(testing::Message() << formulation << " " << spacings);
             const double t = spacings * Dx, low = 0.2, high = 0.4, floor = 0.12;
             const Scene scene = sceneOf(

@@ -34,7 +34,7 @@ const Expected Scenes[] = {
      "solids sort neighbours density walls forces solid-forces extremes time-step floating-solids "
      "integrate laminar-viscosity,-Monaghan artificial-viscosity "
      "solid-collisions",
-     300},
+     310},
     {"artery",
      "solids sort neighbours density walls forces contact extremes time-step objects integrate "
      "laminar-viscosity,-Monaghan artificial-viscosity "
@@ -43,7 +43,7 @@ const Expected Scenes[] = {
     {"oil_and_water",
      "sort neighbours density walls forces extremes time-step integrate "
      "viscosities-of-a-mixture,-Monaghan",
-     260},
+     265},
     {"drops",
      "sort neighbours equation-of-state forces normals surface-tension extremes time-step kick "
      "transport drift laminar-viscosity,-Monaghan "
