@@ -5,6 +5,7 @@
 #include "scene/check.h"
 #include "scene/json.h"
 #include "scene/particles.h"
+#include "scene/thin_solid.h"
 
 #include <gtest/gtest.h>
 
@@ -25,6 +26,13 @@ inline constexpr bool emulated = false;
 #endif
 
 // A shipped scene; coarser on the emulated GPU, so that it has about `particles` of fluid there.
+// Lists see past moving thin solids as these stood when they were made, walks as they stand now:
+// where there are few particles backends would differ by more than rounding.
+inline void thicken(const Scene& scene, Solid& solid) {
+    for (int k = 0; k < 3 && solid.shape == Shape::Block && thinness(scene, solid) > 0; ++k)
+        solid.max[k] = std::max(solid.max[k], solid.min[k] + 2 * scene.simulation.spacing);
+}
+
 inline Scene shippedScene(const std::string& file, double particles = 400) {
     const char* folder =
         std::getenv("SPINDRIFT_CONFIGS");  // where the checkout is not where the program was built
@@ -33,6 +41,7 @@ inline Scene shippedScene(const std::string& file, double particles = 400) {
     const double count = double(countParticles(scene).fluid);
     if (emulated && count > particles)
         scene.simulation.spacing *= float(std::cbrt(count / particles));
+    for (Solid& solid : scene.solids) thicken(scene, solid);
     checkScene(scene, file);
     return scene;
 }
