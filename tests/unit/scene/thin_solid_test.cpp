@@ -32,15 +32,15 @@ Solid meshOf(const Surface& surface, const std::string& name) {
     return solid;
 }
 
-TEST(ThinSolid, ArePlatesAndShellsWhoseLayersWouldMeet) {
+TEST(ThinSolid, ArePlatesAndShellsThroughWhichFluidWouldFeelFluid) {
     for (const int dimensions : {2, 3})
         for (int axis = 0; axis < dimensions; ++axis)
-            for (const double spacings : {0.25, 1.0, 2.0, 3.0, 3.4, 3.6, 5.0}) {
+            for (const double spacings : {0.25, 1.0, 1.5, 1.7, 2.0, 5.0}) {
                 Vec3 high{0.8f, 0.8f, 0.8f};
                 high[axis] = float(0.3 + spacings * Dx);
                 const double thickness =
                     thinness(sceneOf(dimensions), blockOf({0.3f, 0.3f, 0.3f}, high));
-                if (spacings < 3.5)
+                if (spacings < 1.6)  // R - dx
                     EXPECT_NEAR(thickness, spacings * Dx, 1e-6);
                 else
                     EXPECT_EQ(thickness, 0) << spacings;
@@ -56,7 +56,7 @@ TEST(ThinSolid, ArePlatesAndShellsWhoseLayersWouldMeet) {
 // Fluid at half a spacing in front of either face has behind it all that it can see of a wall.
 TEST(ThinSolid, EachSideHasAWallOfItsOwn) {
     for (const int dimensions : {2, 3})
-        for (const double spacings : {0.25, 0.5, 1.0, 1.5, 2.0, 3.0})
+        for (const double spacings : {0.25, 0.5, 1.0, 1.5})
             for (const bool mesh : {false, true}) {
                 if (mesh && dimensions == 2) continue;
                 SCOPED_TRACE(testing::Message() << dimensions << " " << spacings << " " << mesh);
