@@ -57,19 +57,19 @@ int explain(const Scene& scene) {
                double(simulation->bytes()) / double(particles));
 
     const auto times = timePasses(*simulation, scene.compute.steps);
-    fmt::print("a step{:27}{}\n", "", times.empty() ? "" : "ms");
+    fmt::print("a step{:44}{}\n", "", times.empty() ? "" : "ms");
     double sum = 0;
     for (const PlanRow& row : simulation->plan()) {
         if (!row.skipped.empty()) continue;
         const auto time = times.find(row.name);
-        fmt::print("  {:29}{:>5}\n", row.name,
+        fmt::print("  {:46}{:>5}\n", row.name,
                    time == times.end() ? "" : fmt::format("{:.3f}", time->second));
         sum += time == times.end() ? 0 : time->second;
     }
-    if (!times.empty()) fmt::print("  {:29}{:.3f}\n", "together", sum);
+    if (!times.empty()) fmt::print("  {:46}{:.3f}\n", "together", sum);
     fmt::print("\nskipped\n");
     for (const PlanRow& row : simulation->plan())
-        if (!row.skipped.empty()) fmt::print("  {:29}{}\n", row.name, row.skipped);
+        if (!row.skipped.empty()) fmt::print("  {:46}{}\n", row.name, row.skipped);
     return int(Exit::Ok);
 }
 
