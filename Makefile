@@ -93,7 +93,7 @@ LONG_FLOWS = HealthGuard.*:Rest.*:Plan.OfEachShippedScene:NeighbourLists.KeptLis
 	Conservation.*:LocalSteps.LetAPoolRest:*SumsAgreeAfterThreeHundredSteps*
 sanitize: install
 	@test -f build-sanitize/build.ninja || cmake -S . -B build-sanitize -G Ninja --log-level=WARNING \
-		-DSPINDRIFT_CUDA=OFF -DSPINDRIFT_SANITIZE=address,undefined -DSPINDRIFT_SIMD=avx2
+		-DSPINDRIFT_CUDA=OFF -DSPINDRIFT_SANITIZE=address,undefined -DSPINDRIFT_SIMD=sse
 	@cmake --build build-sanitize --target unit_tests render_tests emulated_cuda_tests
 	LSAN_OPTIONS=suppressions=$(CURDIR)/tests/lsan.supp GTEST_FILTER="-$(LONG_FLOWS)" \
 		ctest --test-dir build-sanitize --output-on-failure -j 2 -R "^(unit|render|emulated_cuda)$$"
