@@ -114,8 +114,8 @@ Vec3d outOf(const Scene& scene, const std::vector<Convex>& solids, Vec3d p) {
     return p;
 }
 
-// Who has to leave so that nobody is squeezed by more than a hundredth, nor all by more than their
-// share: fluid that is bursts. In increasing order.
+// Particles that have to leave so that none is squeezed by more than a hundredth, nor all by more
+// than their share: squeezed fluid bursts. In increasing order.
 std::vector<size_t> mostCrowded(const std::vector<Vec3d>& at, const std::vector<double>& densities,
                                 double dx) {
     constexpr double Most = 1.01, Mean = 1.002;

@@ -310,7 +310,7 @@ double soundSpeed(const Scene& s, const FluidExtent& fluid) {
            std::max(std::sqrt(start * start + 2 * fall + pull * pull + tension), 1e-3);
 }
 
-// Whole shells of the bounding box.
+// Both faces with their layers, in the solid and beyond it.
 static double mostInThinSolid(const Scene& scene, const Solid& solid) {
     const int layers = boundaryLayers(scene);
     const double dx = scene.simulation.spacing;
@@ -322,6 +322,7 @@ static double mostInThinSolid(const Scene& scene, const Solid& solid) {
     return std::min(all, 4 * (layers + 2) * (readMesh(solid.path)->area() / (apart * apart) + 100));
 }
 
+// Whole shells of the bounding box.
 static double mostInSolid(const Scene& scene, const Solid& solid) {
     double all = 1, inner = 1;
     if (solid.shape == Shape::Plane) return mostOfPlane(scene);

@@ -79,7 +79,8 @@ public:
     }
 
 private:
-    // Calls f(x, first, end) for stretches of those who may be within reach, as seen from x, radii.
+    // Calls f(x, first, end) for stretches of places that may be within reach, as seen from x,
+    // radii.
     template <class F> void forStretches(Vec3d place, const F& f) const {
         const Vec3d x = inRadii(place);
         const Reach zs = flat_ ? Reach{0, 0} : reachOf(x, 2, 1), ys = reachOf(x, 1, 1);

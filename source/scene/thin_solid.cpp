@@ -87,8 +87,8 @@ private:
             }
     }
 
-    // Of any other shape cells of a lattice that fits its box. Who is on one side takes all of a
-    // cell for wall that is not on that side.
+    // Of any other shape cells of a lattice that fits its box. For fluid on one side all of a
+    // cell that is not on that side is wall.
     void addCells() {
         const int d = scene_.simulation.dimensions;
         Vec3d half = halfExtent(solid_);
@@ -141,7 +141,7 @@ private:
     void addCell(Vec3d middle, const Convex::Nearest& near) {
         constexpr int N = 4;  // parts a side
         const int d = scene_.simulation.dimensions, parts = d == 2 ? N * N : N * N * N;
-        double share[2] = {0, 0};  // that is wall for who is in front, along the normal, and behind
+        double share[2] = {0, 0};  // that is wall for fluid in front, along the normal, and behind
         Vec3d sum[2] = {};
         for (int i = 0; i < parts; ++i) {
             const double z = d == 2 ? 0 : ((i / (N * N) + 0.5) / N - 0.5) * cell_.z;

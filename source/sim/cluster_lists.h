@@ -102,8 +102,8 @@ struct Sight {
         }
         return true;
     }
-    // Which pairs see each other, as in ClusterList; empty slots and who is out of reach count as
-    // if they did, but if there is nobody else nobody does.
+    // Which pairs see each other, as in ClusterList; empty slots and pairs out of reach count as
+    // if they did, unless there are no other pairs.
     uint16_t pairsOf(int c, int j, float reach) const {
         unsigned seen = 0;
         bool any = false, hidden = false;

@@ -16,7 +16,7 @@ template <class R> struct Pair {
     R inverseDistance2;  // 1 / (distance^2 + eta^2), finite everywhere
 };
 
-// `apart`: 0, or enough to put out of reach whoever does not see each other.
+// `apart`: 0, or enough to put pairs out of reach that do not see each other.
 template <class R>
 HD inline Pair<R> makePair(const Constants& c, Vector<R> xi, Vector<R> xj, R apart) {
     const Vector<R> r = imageOf(c, xi - xj);

@@ -307,7 +307,7 @@ private:
     template <class... Ts> void noteTerms(TermList<Ts...>) {
         (rows_.push_back({std::string("forces: ") + Ts::name, Ts::skipped(scene_)}), ...);
     }
-    // Where it is less than what keeps fluid calm anyway, nobody can tell.
+    // Where it is less than what keeps fluid calm anyway, it makes no difference.
     const char* whyViscosityIsNotWeighed() const {
         if (largestViscosity(scene_) <= 0 || scene_.simulation.formulation == Formulation::Classic)
             return "there is no laminar viscosity";
