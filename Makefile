@@ -90,7 +90,7 @@ meson: install
 # AddressSanitizer and UndefinedBehaviorSanitizer, over all but the window and the flows that take minutes with the checks
 # in. Each instruction set takes minutes to compile: one that every machine has, and double precision, are enough.
 LONG_FLOWS = HealthGuard.*:Rest.*:Plan.OfEachShippedScene:NeighbourLists.KeptListsMissNobody:Integrators.FlowsHaveTheirOrder:$\
-	Conservation.*:LocalSteps.LetAPoolRest:*SumsAgreeAfterThreeHundredSteps*
+	Conservation.*:BlockTimeSteps.LetAPoolRest:*SumsAgreeAfterThreeHundredSteps*
 sanitize: install
 	@test -f build-sanitize/build.ninja || cmake -S . -B build-sanitize -G Ninja --log-level=WARNING \
 		-DSPINDRIFT_CUDA=OFF -DSPINDRIFT_SANITIZE=address,undefined -DSPINDRIFT_SIMD=sse

@@ -7,9 +7,9 @@
 //   load, store         a field's values at an index
 //   total(sum)          ends a sum over neighbours
 //
-// Index kinds: `Group` (neighbour passes: a few particles i, each against four neighbours j at
-// once), `Four` (the j side), `Quad` (four particles, no neighbours), `int` (one particle). Without
-// SIMD all are int.
+// Index kinds: `ICluster` (neighbour passes: a few particles i, each against four neighbours j at
+// once), `JCluster` (the j side), `Lanes4` (four particles, no neighbours), `int` (one particle).
+// Without SIMD all are int.
 //
 // This file and all that includes it are compiled once per instruction set, each time in another
 // namespace (LANES).

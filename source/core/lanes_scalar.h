@@ -17,9 +17,9 @@ namespace spindrift::LANES {
 using real = SPINDRIFT_REAL;
 inline constexpr int clusterSize = 1;   // particles that neighbour search treats as one
 inline constexpr int vectorStride = 4;  // numbers stored per vector: 16-byte groups of float
-using Group = int;
-using Four = int;
-using Quad = int;
+using ICluster = int;
+using JCluster = int;
+using Lanes4 = int;
 template <class I> using Real = real;
 using Mask = bool;
 

@@ -26,17 +26,17 @@ inline constexpr int clusterSize = 4;
 inline constexpr int vectorStride = 3;
 
 using WideTag = hn::CappedTag<float, 16>;
-using QuadTag = hn::FixedTag<float, 4>;
+using Lanes4Tag = hn::FixedTag<float, 4>;
 inline constexpr int width = int(hn::MaxLanes(WideTag()));
 
-struct Group {
+struct ICluster {
     int first;
     static constexpr int size = width / 4;
 };
-struct Four {
+struct JCluster {
     int first;
 };
-struct Quad {
+struct Lanes4 {
     int first;
 };
 HD inline int firstOf(int i) { return i; }
@@ -66,7 +66,7 @@ template <class D> struct Pack {
 using Wide = Pack<WideTag>;
 
 template <class I> struct RealOf { using type = Wide; };
-template <> struct RealOf<Quad> { using type = Pack<QuadTag>; };
+template <> struct RealOf<Lanes4> { using type = Pack<Lanes4Tag>; };
 template <> struct RealOf<int> { using type = float; };
 template <class I> using Real = typename RealOf<I>::type;
 
@@ -128,30 +128,30 @@ HD inline float roundDown(float a) { return std::floor(a); }
 
 HD inline float loadAt(const float* p, int i) { return p[i]; }
 HD inline void storeAt(float* p, int i, float value) { p[i] = value; }
-HD inline Pack<QuadTag> loadAt(const float* p, Quad i) {
-    return Pack<QuadTag>(hn::LoadU(QuadTag(), p + i.first));
+HD inline Pack<Lanes4Tag> loadAt(const float* p, Lanes4 i) {
+    return Pack<Lanes4Tag>(hn::LoadU(Lanes4Tag(), p + i.first));
 }
-HD inline void storeAt(float* p, Quad i, Pack<QuadTag> value) {
-    hn::StoreU(value.v, QuadTag(), p + i.first);
+HD inline void storeAt(float* p, Lanes4 i, Pack<Lanes4Tag> value) {
+    hn::StoreU(value.v, Lanes4Tag(), p + i.first);
 }
-HD inline Wide loadAt(const float* p, Four j) {
+HD inline Wide loadAt(const float* p, JCluster j) {
     return Wide(hn::LoadDup128(WideTag(), p + j.first));
 }
 
 HD inline Wide permute(Wide a, const int32_t* lanes) {
     return Wide(hn::TableLookupLanes(a.v, hn::SetTableIndices(WideTag(), lanes)));
 }
-HD inline Wide loadAt(const float* p, Group i) {
+HD inline Wide loadAt(const float* p, ICluster i) {
     if constexpr (width == 4) return Wide(p[i.first]);
     static constexpr int32_t repeat[16] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
     return permute(Wide(hn::LoadDup128(WideTag(), p + i.first)), repeat);
 }
-HD inline void storeAt(float* p, Group i, Wide value) {
+HD inline void storeAt(float* p, ICluster i, Wide value) {
     static constexpr int32_t firsts[16] = {0, 4, 8, 12};
     if constexpr (width == 4)
         p[i.first] = hn::GetLane(value.v);
     else
-        hn::BlendedStore(permute(value, firsts).v, hn::FirstN(WideTag(), Group::size), WideTag(),
+        hn::BlendedStore(permute(value, firsts).v, hn::FirstN(WideTag(), ICluster::size), WideTag(),
                          p + i.first);
 }
 
@@ -159,10 +159,10 @@ HD inline void storeAt(float* p, Group i, Wide value) {
 // clusterSize.
 template <class Pass> void runRange(const Pass& pass, int begin, int end) {
     using Index = typename Pass::Index;
-    if constexpr (std::is_same_v<Index, Group>) {
-        for (int i = begin; i < end; i += Group::size) pass(Group{i});
-    } else if constexpr (std::is_same_v<Index, Quad>) {
-        for (int i = begin; i < end; i += 4) pass(Quad{i});
+    if constexpr (std::is_same_v<Index, ICluster>) {
+        for (int i = begin; i < end; i += ICluster::size) pass(ICluster{i});
+    } else if constexpr (std::is_same_v<Index, Lanes4>) {
+        for (int i = begin; i < end; i += 4) pass(Lanes4{i});
     } else {
         for (int i = begin; i < end; ++i) pass(i);
     }

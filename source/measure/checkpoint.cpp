@@ -188,7 +188,7 @@ Checkpoint readAll(hid_t file, const std::string& path) {
     if (c.state.solids.empty() && std::any_of(c.scene.solids.begin(), c.scene.solids.end(), floats))
         throw Trouble{"solid motions"};
     if (!c.scene.objects.empty()) readObjects(file, c);
-    if (isMixture(c.scene))
+    if (isMultiFluid(c.scene))
         c.state.particles.bodies = readArray<uint16_t>(file, "bodies", H5T_NATIVE_UINT16, 1);
     if (carriesDensity(c.scene))
         c.state.densities = readArray<float>(file, "densities", H5T_NATIVE_FLOAT, 1);
@@ -200,7 +200,8 @@ Checkpoint readAll(hid_t file, const std::string& path) {
         throw Trouble{"velocities"};
     if (carriesDensity(c.scene) && c.state.densities.size() != c.state.particles.positions.size())
         throw Trouble{"densities"};
-    if (isMixture(c.scene) && c.state.particles.bodies.size() != c.state.particles.positions.size())
+    if (isMultiFluid(c.scene) &&
+        c.state.particles.bodies.size() != c.state.particles.positions.size())
         throw Trouble{"bodies"};
     for (const uint16_t body : c.state.particles.bodies)
         if (body >= c.scene.fluid.bodies.size()) throw Trouble{"bodies"};

@@ -52,7 +52,7 @@ void SeriesFiles::remark(double time, const std::string& text) {
 }
 
 void SeriesFiles::keepUp() {
-    if (changed_ && Clock::now() >= due_) replace(false);
+    if (changed_ && Clock::now() >= active_) replace(false);
 }
 
 void SeriesFiles::dropAfter(double time) {
@@ -71,16 +71,16 @@ void SeriesFiles::finish() {
 }
 
 void SeriesFiles::replace(bool streamsToo) {
-    const auto isDue = [&](const std::string& path) {
+    const auto isActive = [&](const std::string& path) {
         return !path.empty() && (isStream(path) ? streamsToo : changed_);
     };
     const Clock::time_point start = Clock::now();
-    if (isDue(json_)) writeText(json_, series_.json());
-    if (isDue(hdf5_)) series_.writeHdf5(hdf5_);
+    if (isActive(json_)) writeText(json_, series_.json());
+    if (isActive(hdf5_)) series_.writeHdf5(hdf5_);
     changed_ = false;
     const Clock::duration took = Clock::now() - start;
-    due_ = Clock::now() +
-           std::max(std::min<Clock::duration>(20 * took, std::chrono::seconds(1)), 4 * took);
+    active_ = Clock::now() +
+              std::max(std::min<Clock::duration>(20 * took, std::chrono::seconds(1)), 4 * took);
 }
 
 }  // namespace spindrift

@@ -40,7 +40,7 @@ private:
     std::optional<GrowingText> csvFile_;  // from the first row on
     double lastTime_ = -1;
     bool changed_ = false;  // since JSON and HDF5 were written
-    Clock::time_point due_{};
+    Clock::time_point active_{};
 };
 
 }  // namespace spindrift

@@ -377,7 +377,7 @@ bool turnFluids(Scene& s, uint64_t seed) {
     if (dice.oneIn(2) && !summed && !carried)
         f.surfaceTension = f.restDensity * 9.81f * s.simulation.spacing * s.simulation.spacing *
                            dice.logarithmic(0.1, 100);
-    if (dice.oneIn(4) && summed && !isMixture(s)) s.simulation.pressureForm = PressureForm::Mean;
+    if (dice.oneIn(4) && summed && !isMultiFluid(s)) s.simulation.pressureForm = PressureForm::Mean;
     return f.buoyancy == 0 && f.airDensity == 0 && f.surfaceTension == 0 &&
            s.simulation.pressureForm == PressureForm::Squares;
 }

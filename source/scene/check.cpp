@@ -3,7 +3,7 @@
 #include "scene/body_lattice.h"
 #include "core/error.h"
 #include "scene/check_methods.h"
-#include "scene/check_things.h"
+#include "scene/check_bodies.h"
 #include "scene/convex.h"
 #include "scene/json.h"
 #include "scene/motion.h"
@@ -43,7 +43,7 @@ constexpr double BytesPerObjectParticle = 1200, GpuBytesPerObjectParticle = 320;
 constexpr double HostBytesPerGpuParticle = 100;
 constexpr double GpuBytesAnyway = 64 << 20;
 // Particle ids are 32-bit; walls and fluid together stay clear of the limit.
-constexpr int64_t MostParticles = 1'000'000'000;
+constexpr int64_t MostParticles = 1'000'000000;
 constexpr double SmallestSupport = 1.5;
 
 std::string bodyPath(size_t index) { return fmt::format("fluid.bodies[{}]", index); }
@@ -123,12 +123,12 @@ void checkRareForces(const Scene& scene) {
                            name));
     const bool alone =
         formulation == Formulation::Classic || formulation == Formulation::TransportVelocity;
-    if (alone && (mixes(scene) || f.dissipation > 0))
+    if (alone && (hasMixingForces(scene) || f.dissipation > 0))
         refuse("fluid", fmt::format("velocity_transfer, buoyancy and dissipation are not of {}; "
                                     "use wcsph, delta_sph or delta_plus, or set "
                                     "them to 0",
                                     name));
-    const bool several = isMixture(scene);
+    const bool several = isMultiFluid(scene);
     if (several && formulation != Formulation::Wcsph && formulation != Formulation::DeltaSph)
         refuse("fluid.bodies", fmt::format("are of several fluids, which {} does not have; use "
                                            "wcsph or delta_sph, or leave rest_density and "
@@ -517,7 +517,7 @@ int64_t estimateGpuMemory(const Scene& scene, ParticleCount count) {
     const double more = (local ? GpuBytesPerLocalStep : 0) +
                         (carriesDensity(scene) ? GpuBytesPerCarried : 0) +
                         (shiftsParticles(scene) ? GpuBytesPerShifted : 0) +
-                        (isMixture(scene) ? GpuBytesPerMixed : 0) +
+                        (isMultiFluid(scene) ? GpuBytesPerMixed : 0) +
                         (scene.fluid.surfaceTension > 0 ? GpuBytesPerNormal : 0);
     const double bytes = (GpuBytesPerParticle + more + keptBytes(scene)) * fluid +
                          (GpuBytesPerWall + (local ? GpuBytesPerLocalWall : 0)) * walls +

@@ -1,6 +1,6 @@
 #include "scene/check_methods.h"
 
-#include "scene/check_things.h"
+#include "scene/check_bodies.h"
 #include "scene/schema.h"
 
 #include <algorithm>
@@ -69,7 +69,8 @@ void checkPressureForm(const Scene& scene) {
         refuse("simulation.pressure_form",
                fmt::format("mean is one of wcsph; {} has its own, use squares",
                            enumNames(Formulation())[size_t(formulation)]));
-    if (isMixture(scene)) refuse("simulation.pressure_form", "mean is for one fluid; use squares");
+    if (isMultiFluid(scene))
+        refuse("simulation.pressure_form", "mean is for one fluid; use squares");
 }
 
 }  // namespace
@@ -83,7 +84,7 @@ void checkMethods(const Scene& scene) {
     checkViscosityForm(scene);
     const auto floats = [](const Solid& s) { return s.floats(); };
     const bool several =
-        isMixture(scene) || std::any_of(scene.solids.begin(), scene.solids.end(), floats);
+        isMultiFluid(scene) || std::any_of(scene.solids.begin(), scene.solids.end(), floats);
     if (integrator == Integrator::Split && (formulation != Formulation::DeltaSph || several))
         refuse("time.integrator",
                "split is for delta_sph, one fluid, and nothing that floats; use "

@@ -134,7 +134,7 @@ float restDensity(const Scene& scene, const Body& body) {
 float viscosity(const Scene& scene, const Body& body) {
     return body.viscosity >= 0 ? body.viscosity : scene.fluid.viscosity;
 }
-bool isMixture(const Scene& scene) {
+bool isMultiFluid(const Scene& scene) {
     return std::any_of(scene.fluid.bodies.begin(), scene.fluid.bodies.end(), [&](const Body& b) {
         return restDensity(scene, b) != scene.fluid.restDensity ||
                b.viscosity >= 0;  // the scene's viscosity may change during a run
@@ -165,7 +165,7 @@ const char* whyViscosityForm(const Scene& scene) {
                : "it drags fluid at free surfaces (fluid.viscosity_form)";
 }
 
-bool mixes(const Scene& scene) {
+bool hasMixingForces(const Scene& scene) {
     return scene.fluid.velocityTransfer > 0 || scene.fluid.buoyancy > 0;
 }
 
@@ -215,7 +215,7 @@ Placement placeParticles(const Scene& scene) {
             placeFile(scene, scene.fluid.bodies[b], out);
         out.bodies.resize(out.positions.size(), uint16_t(b));
     }
-    if (!isMixture(scene)) out.bodies = {};
+    if (!isMultiFluid(scene)) out.bodies = {};
     if (!out.densities.empty()) out.densities.resize(out.positions.size());
     for (const Solid& solid : scene.solids) {
         const std::vector<Vec3> points = boundaryOf(scene, solid).positions;

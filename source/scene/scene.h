@@ -323,12 +323,12 @@ float particleMass(const Scene&);     // kg; in two dimensions kg/m
 // anew.
 bool carriesDensity(const Scene&);
 // Whether there is velocity transfer or buoyancy.
-bool mixes(const Scene&);
+bool hasMixingForces(const Scene&);
 // Of a body at rest, kg/m³, and of its fluid, Pa s: its own, or those of all.
 float restDensity(const Scene&, const Body&);
 float viscosity(const Scene&, const Body&);
 // Whether its bodies are of more than one fluid.
-bool isMixture(const Scene&);
+bool isMultiFluid(const Scene&);
 // The most of all fluids, Pa s.
 float largestViscosity(const Scene&);
 // Whether any wall or solid lets fluid slip.

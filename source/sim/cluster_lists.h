@@ -127,7 +127,7 @@ public:
     ClusterList* data() { return lists_.data(); }
     int64_t bytes() const {
         size_t numbers = 0;
-        for (const auto* arenas : {&entries_, &pruned_})
+        for (const auto* arenas : {&entries_, &inner_})
             for (const std::vector<uint32_t>& arena : *arenas) numbers += arena.capacity();
         return int64_t(lists_.capacity() * sizeof(ClusterList) + listed_.capacity() +
                        (numbers + ends_.capacity()) * sizeof(uint32_t));
@@ -138,7 +138,7 @@ public:
         PairsSeen seen{inside, inside};
         for (const ClusterList& list : lists_) {
             seen.first += double(list.count) * clusterSize * clusterSize;
-            seen.later += double(Group::size == clusterSize ? list.prunedCount : list.count) *
+            seen.later += double(ICluster::size == clusterSize ? list.innerCount : list.count) *
                           clusterSize * clusterSize;
         }
         return seen;
@@ -150,31 +150,31 @@ public:
     }
 
     // Particles have another order or places: what there is holds no longer.
-    void forget(const Particles& own) {
+    void invalidate(const Particles& own) {
         const size_t clusters = size_t(own.slots / clusterSize);
         lists_.assign(clusters, ClusterList{});
         listed_.assign(clusters, false);
         complete_ = false;
         piece_ = std::max(64, (int(clusters) + 255) / 256);
         entries_.resize((clusters + piece_ - 1) / piece_);
-        pruned_.resize(entries_.size());
-        seen_.resize(entries_.size()), prunedSeen_.resize(entries_.size());
+        inner_.resize(entries_.size());
+        seen_.resize(entries_.size()), innerSeen_.resize(entries_.size());
         ends_.resize(entries_.size());
         for (size_t p = 0; p < ends_.size(); ++p)
             ends_[p] = uint32_t(std::min(clusters, (p + 1) * piece_));
     }
     // Makes the lists that are wanted and not there: of all clusters, or with `due` of those of
-    // which it says more than NotDue. Boxes and cells are those of when the last ones were
+    // which it says more than Inactive. Boxes and cells are those of when the last ones were
     // forgotten.
     void build(Omp& device, const Grid& grid, float reach, const ClusterBoxes& own,
-               const uint8_t* due, const ClusterBoxes& other, const int* otherCellStart,
+               const uint8_t* active, const ClusterBoxes& other, const int* otherCellStart,
                bool once = false, const Sight& sight = {}) {
         if (complete_ || otherCellStart[cellCount(grid)] == 0) return;
-        complete_ = !due;
+        complete_ = !active;
         const Search search{grid,
                             reach,
                             own,
-                            due,
+                            active,
                             other,
                             otherCellStart,
                             once,
@@ -195,13 +195,13 @@ private:
         const Grid& grid;
         float reach;
         const ClusterBoxes& own;
-        const uint8_t* due;
+        const uint8_t* active;
         const ClusterBoxes& other;
         const int* cellStart;
         bool once;
         const Sight& sight;
         float period[3];  // m, 0 where there is none
-        bool wants(int cluster) const { return !due || due[cluster] > NotDue; }
+        bool wants(int cluster) const { return !active || active[cluster] > Inactive; }
     };
     static float periodOf(int wraps, int cells, float perMetre) {
         return wraps ? float(cells) / perMetre : 0;
@@ -209,8 +209,8 @@ private:
     static size_t cellCount(const Grid& g) { return size_t(g.cells.x) * g.cells.y * g.cells.z; }
 
     uint32_t buildPiece(int begin, int end, const Search& s, int piece) {
-        std::vector<uint32_t>&entries = entries_[piece], &pruned = pruned_[piece];
-        std::vector<uint16_t>&seen = seen_[piece], &prunedSeen = prunedSeen_[piece];
+        std::vector<uint32_t>&entries = entries_[piece], &inner = inner_[piece];
+        std::vector<uint16_t>&seen = seen_[piece], &innerSeen = innerSeen_[piece];
         seen.clear();
         size_t used = 0;
         uint32_t farthest = uint32_t(end);
@@ -240,12 +240,12 @@ private:
             }
         }
         // The arena may have moved while it grew: only now are addresses known.
-        pruned.resize(entries.size()), prunedSeen.resize(seen.size() + 1);
+        inner.resize(entries.size()), innerSeen.resize(seen.size() + 1);
         size_t next = 0, nextSeen = 0;
         for (int c = begin; c < end; ++c) {
             ClusterList& list = lists_[c];
-            list.clusters = entries.data() + next, list.pruned = pruned.data() + next;
-            list.seen = seen.data() + nextSeen, list.prunedSeen = prunedSeen.data() + nextSeen;
+            list.clusters = entries.data() + next, list.inner = inner.data() + next;
+            list.seen = seen.data() + nextSeen, list.innerSeen = innerSeen.data() + nextSeen;
             next += list.count, nextSeen += list.count - list.clear;
         }
         return farthest;
@@ -404,8 +404,8 @@ private:
     std::vector<uint32_t> ends_;   // a piece: one beyond the last cluster in its lists
     std::vector<ClusterList> lists_;
     std::vector<std::vector<uint32_t>> entries_,
-        pruned_;  // one arena a piece, kept from step to step
-    std::vector<std::vector<uint16_t>> seen_, prunedSeen_;
+        inner_;  // one arena a piece, kept from step to step
+    std::vector<std::vector<uint16_t>> seen_, innerSeen_;
 };
 
 }  // namespace spindrift::LANES

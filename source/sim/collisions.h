@@ -10,14 +10,14 @@ namespace spindrift::LANES {
 // The way of a particle from the share `begin` of a step to its end, m. A straight line in space,
 // it is a curved one as a solid sees it that turns; along the one that carries it, it is straight
 // in that one's own axes.
-struct Way {
+struct Sweep {
     Vector<real> from, to;
     real begin;
     int carrier;                         // -1: none
     Vector<real> ownFrom, ownTo, stays;  // stays: in space, where it would be without sliding
 };
 // Where and when it meets a solid, and that one's normal there, both in its own axes.
-struct Meeting {
+struct Hit {
     real share;
     Vector<real> at, normal;
 };
@@ -25,9 +25,9 @@ struct Meeting {
 // A solid during a step.
 struct SolidInStep {
     const SolidState& s;
-    const Constants& c;
+    const StepParameters& c;
 
-    HD static Vector<real> placeAt(const Way& way, real share) {
+    HD static Vector<real> placeAt(const Sweep& way, real share) {
         const real along = way.begin < 1 ? (share - way.begin) / (1 - way.begin) : real(1);
         return addScaled(way.from, along, way.to - way.from);
     }
@@ -66,7 +66,7 @@ struct SolidInStep {
 
     // In pieces that are nearly straight as the solid sees them, and short enough for one image of
     // it.
-    HD bool meets(const Way& way, Meeting& m) const {
+    HD bool meets(const Sweep& way, Hit& m) const {
         const Vector<real> line = way.to - way.from;
         real pieces = 1 + 4 * squareRoot(dot(s.turn, s.turn)) * (1 - way.begin);
         if (c.periodic) pieces = pieces + squareRoot(dot(line, line)) / c.support;
@@ -86,20 +86,20 @@ struct SolidInStep {
         }
         return false;
     }
-    HD bool meetsCarried(const Way& way, Meeting& m) const {
+    HD bool meetsCarried(const Sweep& way, Hit& m) const {
         if (!enters(way.ownFrom, way.ownTo, m)) return false;
         m.share = way.begin + m.share * (1 - way.begin);
         return true;
     }
-    HD bool enters(Vector<real> p, Vector<real> q, Meeting& m) const {
+    HD bool enters(Vector<real> p, Vector<real> q, Hit& m) const {
         return s.field ? entersMesh(p, q, m) : entersConvex(p, q, m);
     }
     // Who is inside already and goes on inward is stopped where it is nearest to the surface.
-    HD bool goesInward(Vector<real> p, Vector<real> q, real distance, Meeting& m) const {
+    HD bool goesInward(Vector<real> p, Vector<real> q, real distance, Hit& m) const {
         m.share = 0, m.at = addScaled(p, c.gap - distance, m.normal);
         return dot(q - p, m.normal) < 0;
     }
-    HD bool entersConvex(Vector<real> p, Vector<real> q, Meeting& m) const {
+    HD bool entersConvex(Vector<real> p, Vector<real> q, Hit& m) const {
         if (const real d = nearest(s, p, m.normal); d <= 0) return goesInward(p, q, d, m);
         const Vector<real> way = q - p;
         real in = -1, out = real(1e30);
@@ -134,7 +134,7 @@ struct SolidInStep {
     }
     // From where the way enters the box of the mesh, as far each time as nothing is near, or a
     // small part of the field's cells.
-    HD bool entersMesh(Vector<real> p, Vector<real> q, Meeting& m) const {
+    HD bool entersMesh(Vector<real> p, Vector<real> q, Hit& m) const {
         const Vector<real> way = q - p;
         real in = 0, out = 1;
         for (int k = 0; k < s.planes; ++k) {
@@ -179,11 +179,11 @@ struct Bounces {
 };
 
 struct KeepOutOfSolids {
-    using Index = Quad;
-    using R = Real<Quad>;
+    using Index = Lanes4;
+    using R = Real<Lanes4>;
     View v;
     Bounces bounces;
-    HD void operator()(Quad i) const {
+    HD void operator()(Lanes4 i) const {
         const Vector<R> x = load(v.fluid.position, i), from = begin(i, x);
         R room = real(1e30);
         for (int s = 0; s < v.solidCount; ++s) room = min(room, roomTo(v.solids[s], from, x));
@@ -195,7 +195,7 @@ struct KeepOutOfSolids {
     }
     // Who rests did not drift.
     template <class I> HD Vector<Real<I>> begin(I i, Vector<Real<I>> x) const {
-        return isDue<NotDue>(v.fluid, firstOf(i)) ? load(v.fluid.keptPosition, i) : x;
+        return isActive<Inactive>(v.fluid, firstOf(i)) ? load(v.fluid.keptPosition, i) : x;
     }
     // No more than how much further the surface is from the end of the way than the way is long, as
     // the solid sees it.
@@ -220,17 +220,17 @@ struct KeepOutOfSolids {
     }
     HD void stop(int i) const {
         const Vector<real> x = load(v.fluid.position, i);
-        Way way{begin(i, x), x, 0, -1, {}, {}, {}};
+        Sweep way{begin(i, x), x, 0, -1, {}, {}, {}};
         const Vector<real> before = load(v.fluid.velocity, i);
         Vector<real> u = before;
         int last = -1;
         bool free = false;
         for (int k = 0; k < mostMeetings && !free; ++k) {
             int first = -1;
-            Meeting soonest{2, {0, 0, 0}, {0, 0, 0}};
+            Hit soonest{2, {0, 0, 0}, {0, 0, 0}};
             for (int s = 0; s < v.solidCount; ++s) {
                 const SolidInStep solid{v.solids[s], v.c};
-                Meeting m{2, {0, 0, 0}, {0, 0, 0}};
+                Hit m{2, {0, 0, 0}, {0, 0, 0}};
                 if ((s == way.carrier ? solid.meetsCarried(way, m) : solid.meets(way, m)) &&
                     m.share < soonest.share)
                     soonest = m, first = s;
@@ -249,7 +249,7 @@ struct KeepOutOfSolids {
             store(bounces.change, i, u - before), store(bounces.solid, i, real(last));
     }
     // It is carried along, and goes on in the plane that touches the solid there, in the box.
-    HD void slide(int carrier, const Meeting& m, Way& way, Vector<real>& u) const {
+    HD void slide(int carrier, const Hit& m, Sweep& way, Vector<real>& u) const {
         const SolidState& s = v.solids[carrier];
         const SolidInStep solid{s, v.c};
         const Vector<real> place = SolidInStep::placeAt(way, m.share),

@@ -54,15 +54,15 @@ template <class R> HD inline Vector<R> contactForce(const ContactLaw& law, const
 
 // Adds what objects do to the fluid to its acceleration.
 struct PushFluid {
-    using Index = Group;
-    using R = Real<Group>;
+    using Index = ICluster;
+    using R = Real<ICluster>;
     ContactView c;
-    HD void operator()(Group i) const {
+    HD void operator()(ICluster i) const {
         const Particles& fluid = c.v.fluid;
         const Vector<R> x = load(fluid.position, i), u = load(fluid.velocity, i);
         Vector<R> sum{R(0), R(0), R(0)};
         forNeighbours<Lists::All>(
-            c.v, c.objectsNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
+            c.v, c.objectsNearFluid, i, x, [&](const auto& p, JCluster j) LANE_CALL {
                 const R reach =
                     R(c.law.influence) * (R(c.law.fluidRadius) + load(c.surface.radius, j));
                 sum = sum + contactForce(c.law, p, reach, u - load(c.surface.velocity, j),
@@ -76,23 +76,23 @@ struct PushFluid {
 // What fluid and other objects do to an object's surface. Of itself it meets only what was not near
 // at the start.
 struct PushObjects {
-    using Index = Group;
-    using R = Real<Group>;
+    using Index = ICluster;
+    using R = Real<ICluster>;
     ContactView c;
-    HD void operator()(Group i) const {
+    HD void operator()(ICluster i) const {
         const ObjectSurface& s = c.surface;
         const Vector<R> x = load(s.position, i), u = load(s.velocity, i), home = load(s.home, i);
         const R radius = load(s.radius, i), object = load(s.object, i),
                 whole = R(1) - load(s.torn, i), none = 0;
         Vector<R> sum{none, none, none};
         forNeighbours<Lists::All>(
-            c.v, c.fluidNearObjects, i, x, [&](const auto& p, Four j) LANE_CALL {
+            c.v, c.fluidNearObjects, i, x, [&](const auto& p, JCluster j) LANE_CALL {
                 sum = sum + contactForce(c.law, p,
                                          R(c.law.influence) * (R(c.law.fluidRadius) + radius),
                                          u - load(c.v.fluid.velocity, j), whole);
             });
         forNeighbours<Lists::All>(
-            c.v, c.objectsNearObjects, i, x, [&](const auto& p, Four j) LANE_CALL {
+            c.v, c.objectsNearObjects, i, x, [&](const auto& p, JCluster j) LANE_CALL {
                 const R reach = radius + load(s.radius, j), other = load(s.object, j) - object,
                         two = 2;
                 const Vector<R> apart = home - load(s.home, j);

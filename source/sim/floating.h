@@ -14,9 +14,9 @@ namespace spindrift::LANES {
 // are deep in it. They press like damped springs and rub (Cundall & Strack 1979); a face full of
 // them is as stiff as the step can bear, and overlaps by about a thousandth of a spacing under its
 // weight.
-struct Touch {
+struct Wrench {
     Vec3d force, torque;
-    HD_OUT void add(const Touch& o) { force = force + o.force, torque = torque + o.torque; }
+    HD_OUT void add(const Wrench& o) { force = force + o.force, torque = torque + o.torque; }
 };
 
 // What presses: a mass m on such a spring, k = m rate^2, swings at `rate` rad/s and is damped by
@@ -49,7 +49,7 @@ struct SumTouches {
         real radius;
     };
 
-    HD void addTo(Touch& sum, int i) const {
+    HD void addTo(Wrench& sum, int i) const {
         const int owner = v.walls.id[i] < 0 ? -1 : home.solidOf(v.walls.id[i]);
         if (owner < 0) return;
         const SolidState& own = v.solids[owner];
@@ -84,7 +84,7 @@ struct SumTouches {
         auto side = [&](real overlap, Vector<real> n) {
             force = force + press(body, overlap, n, b.velocity - wallVelocity(v.c, b.position));
         };
-        const Constants& c = v.c;
+        const StepParameters& c = v.c;
         if (c.period.x <= 0)
             side(b.radius - (b.position.x - c.low.x), {1, 0, 0}),
                 side(b.radius - (c.high.x - b.position.x), {-1, 0, 0});
@@ -120,8 +120,8 @@ struct SumTouches {
 
 struct AddTouch {
     using Index = int;
-    const Touch* one;
-    Touch* sum;
+    const Wrench* one;
+    Wrench* sum;
     HD void operator()(int) const { sum->add(*one); }
 };
 
@@ -132,7 +132,7 @@ struct SumBounces {
     Bounces bounces;
     real mass;  // kg, of a fluid particle
     int solid;
-    HD void addTo(Touch& sum, int i) const {
+    HD void addTo(Wrench& sum, int i) const {
         if (v.fluid.id[i] < 0 || load(bounces.solid, i) != real(solid)) return;
         const Vector<real> change = load(bounces.change, i),
                            arm = imageOf(v.c,
@@ -145,12 +145,12 @@ struct SumBounces {
 struct TakeMomentum {
     using Index = int;
     const RigidBody* bodies;
-    const Touch* given;
+    const Wrench* given;
     SolidMotion* motions;
     int dimensions;
     HD void operator()(int s) const {
         if (bodies[s].mass <= 0) return;
-        Touch t = given[s];
+        Wrench t = given[s];
         if (dimensions == 2) t.force.z = t.torque.x = t.torque.y = 0;
         motions[s].velocity = motions[s].velocity + (1 / bodies[s].mass) * t.force;
         motions[s].angularMomentum = motions[s].angularMomentum + t.torque;
@@ -174,7 +174,7 @@ struct MoveFloating {
     const RigidBody* bodies;
     SolidMotion* motions;
     const SolidLoad* loads;
-    const Touch* touches;
+    const Wrench* touches;
     double fluidMass;  // kg, of a particle
     Hold hold;         // target relative to the domain's lower corner
     Hand hand;
@@ -185,7 +185,7 @@ struct MoveFloating {
         const RigidBody& body = bodies[s];
         SolidMotion& m = motions[s];
         const double dt = v.state->dt;
-        Touch w = wrenchOn(s);
+        Wrench w = wrenchOn(s);
         if (hold.solid == s) pull(w, body, m, v.solids[s]);
         if (v.c.dimensions == 2) w.force.z = w.torque.x = w.torque.y = 0;
         m.velocity = m.velocity + (kick * dt / body.mass) * w.force;
@@ -193,7 +193,7 @@ struct MoveFloating {
         m.place = wrapped(m.place + (drift * dt) * m.velocity);
         turnBy(m.turn, (drift * dt) * spinOf(body, m));
     }
-    HD Touch wrenchOn(int s) const {
+    HD Wrench wrenchOn(int s) const {
         const SolidLoad& load = loads[s];
         const SolidState& state = v.solids[s];
         const Vector<real> pull = bodyForce(v.c, gravityNow(v), state.centreOfMass),
@@ -204,7 +204,8 @@ struct MoveFloating {
         return {fluid + touches[s].force + bodies[s].mass * Vec3d{pull.x, pull.y, pull.z},
                 fluidMass * torque + cross(Vec3d{out.x, out.y, out.z}, fluid) + touches[s].torque};
     }
-    HD void pull(Touch& w, const RigidBody& body, const SolidMotion& m, const SolidState& s) const {
+    HD void pull(Wrench& w, const RigidBody& body, const SolidMotion& m,
+                 const SolidState& s) const {
         const double rate = 15;  // 1/s
         const Vec3d target{hold.target.x, hold.target.y, hold.target.z};
         const Vec3d wanted = (rate * rate) * (target - Vec3d{s.middle.x, s.middle.y, s.middle.z}) -
@@ -244,7 +245,7 @@ struct MoveFloating {
         return slowed + (size > most ? most / size : 1.0) * change;
     }
     HD Vec3d wrapped(Vec3d x) const {
-        const Constants& c = v.c;
+        const StepParameters& c = v.c;
         return {x.x - c.period.x * floor(x.x * c.inversePeriod.x),
                 x.y - c.period.y * floor(x.y * c.inversePeriod.y),
                 x.z - c.period.z * floor(x.z * c.inversePeriod.z)};
@@ -412,7 +413,7 @@ private:
     Buffer<RigidBody, Device> bodies_{device_};
     Buffer<SolidMotion, Device> motions_{device_};
     Buffer<SolidLoad, Device> loads_{device_};
-    Buffer<Touch, Device> touches_{device_}, also_{device_};
+    Buffer<Wrench, Device> touches_{device_}, also_{device_};
     double handMass_ = 0;                                        // kg
     Buffer<Stops, Device> stops_{device_};                       // of what the mouse holds
     Buffer<real, Device> change_{device_}, stoppedBy_{device_};  // of fluid, see Bounces

@@ -23,11 +23,11 @@ enum Advance : unsigned {
 };
 
 template <unsigned what> struct Integrate {
-    using Index = Quad;
-    using R = Real<Quad>;
+    using Index = Lanes4;
+    using R = Real<Lanes4>;
     View v;
-    HD void operator()(Quad i) const {
-        if (!isDue<NotDue>(v.fluid, i)) return;  // its cluster rests
+    HD void operator()(Lanes4 i) const {
+        if (!isActive<Inactive>(v.fluid, i)) return;  // its cluster rests
         const R dt = real(v.state->dt), half = real(0.5) * real(v.state->dt),
                 way = what & HalfDrift ? half : dt;
         constexpr bool resumesVelocity = (what & Resume) && (what & (Kick | HalfKick));
@@ -41,14 +41,14 @@ template <unsigned what> struct Integrate {
         if constexpr (what & KickOn) u = addScaled(u, half, load(v.fluid.acceleration, i));
         store(v.fluid.velocity, i, resting(i, u));
     }
-    HD void keep(Quad i, Vector<R> u) const {
+    HD void keep(Lanes4 i, Vector<R> u) const {
         store(v.fluid.keptPosition, i, load(v.fluid.position, i));
         store(v.fluid.keptVelocity, i, u);
         if constexpr (what & DriftDensity) store(v.fluid.keptDensity, i, load(v.fluid.density, i));
     }
     // Empty slots see each other as well: in thick fluid their speed would grow until it is none,
     // and a neighbour's weight of 0 times that is no number.
-    HD Vector<R> resting(Quad i, Vector<R> u) const {
+    HD Vector<R> resting(Lanes4 i, Vector<R> u) const {
         const auto empty = load(v.fluid.position, i).x > R(farAway);
         const R zero = 0;
         return {select(empty, zero, u.x), select(empty, zero, u.y), select(empty, zero, u.z)};
@@ -56,7 +56,7 @@ template <unsigned what> struct Integrate {
     // Where fluid fills its space and gradients are differences, a pressure that is the same
     // everywhere does nothing, and its drift, the sum of small errors of div u, is taken out by
     // keeping the volume of all particles.
-    HD void driftDensity(Quad i, R dt) const {
+    HD void driftDensity(Lanes4 i, R dt) const {
         R rho = mulAdd(dt, load(v.fluid.densityRate, i),
                        load(what & Resume ? v.fluid.keptDensity : v.fluid.density, i));
         if constexpr (what & KeepVolume) rho = R(real(v.state->volume)) * rho;
@@ -64,7 +64,7 @@ template <unsigned what> struct Integrate {
         const auto empty = load(v.fluid.position, i).x > R(farAway);
         store(v.fluid.density, i, select(empty, R(v.c.restDensity), rho));
     }
-    HD void drift(Quad i, R dt, Vector<R>& u) const {
+    HD void drift(Lanes4 i, R dt, Vector<R>& u) const {
         const Vector<R> before = load(v.fluid.position, i);
         const Vector<R> from = what & Resume ? load(v.fluid.keptPosition, i) : before;
         Vector<R> x = addScaled(from, dt, u);
@@ -83,7 +83,7 @@ template <unsigned what> struct Integrate {
         if ((what & Drift) && v.solidCount > 0) keepWay(i, from, unwrapped, keepEmpty(before, x));
     }
     // Where the way began that ends here, in a line with it over periodic sides.
-    HD void keepWay(Quad i, Vector<R> from, Vector<R> to, Vector<R> place) const {
+    HD void keepWay(Lanes4 i, Vector<R> from, Vector<R> to, Vector<R> place) const {
         if (v.c.period.x > 0) from.x = place.x - (to.x - from.x);
         if (v.c.period.y > 0) from.y = place.y - (to.y - from.y);
         if (v.c.period.z > 0) from.z = place.z - (to.z - from.z);

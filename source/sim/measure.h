@@ -12,9 +12,10 @@ template <class Device> Measurement SimulationOn<Device>::measure() {
     const Vec3d center = (1 / n) * Vec3d{t.position[0], t.position[1], t.position[2]};
     Measurement m;
     m.dimensions = scene_.simulation.dimensions;
-    m.time = state.time, m.dt = hasLocalSteps() ? state.longest : state.dt, m.steps = state.steps;
+    m.time = state.time, m.dt = hasBlockTimeSteps() ? state.longest : state.dt,
+    m.steps = state.steps;
     m.longestStep = std::max(state.longest, m.dt);
-    m.evaluations = hasLocalSteps() ? state.evaluations : count * double(state.steps);
+    m.evaluations = hasBlockTimeSteps() ? state.evaluations : count * double(state.steps);
     m.kineticEnergy = mass * t.speed2 / 2;
     m.potentialEnergy =
         mass * n * dot(-1.0 * toDouble(scene_.simulation.gravity), center) + 0.0;  // no minus zero
@@ -30,7 +31,7 @@ template <class Device> Measurement SimulationOn<Device>::measure() {
     m.densityError = t.compression / count;
     m.maxDensityError = t.maxRatio - 1;
     m.maxSpeed = std::sqrt(t.maxSpeed2);
-    m.soundSpeed = constants_.soundSpeed;
+    m.soundSpeed = parameters_.soundSpeed;
     m.finite = t.notFinite == 0;
     if (solids_.moves()) moveSolids();  // to where the fluid is since the last step
     const std::vector<SolidState> solids = solids_.download();

@@ -2,7 +2,7 @@
 // the support radius R, the particle itself included when it is of the same set; with SIMD also
 // with some that are further away, which kernels turn into zeros. The first pass of a step,
 // `Prune`, notes for the later ones, `Pruned`, which clusters are worth a look; lists that are read
-// but once a step are not pruned, `All`.
+// but once a step build no inner list, `All`.
 #pragma once
 
 #include "sim/screens.h"
@@ -18,20 +18,20 @@ template <class R> struct Pair {
 
 // `apart`: 0, or enough to put pairs out of reach that do not see each other.
 template <class R>
-HD inline Pair<R> makePair(const Constants& c, Vector<R> xi, Vector<R> xj, R apart) {
+HD inline Pair<R> makePair(const StepParameters& c, Vector<R> xi, Vector<R> xj, R apart) {
     const Vector<R> r = imageOf(c, xi - xj);
     const R d2 = dot(r, r);
     return {r, d2, squareRoot(mulAdd(d2, R(c.inverseSupport2), apart)), reciprocal(d2 + R(c.eta2))};
 }
 
-enum class Lists { All, Prune, Pruned };
+enum class Lists { All, BuildInner, Inner };
 
 #ifdef SPINDRIFT_SIMD
 // A group narrower than a cluster sees but a part of the hits, so that it can't prune.
-inline constexpr bool prunes = Group::size == clusterSize;
+inline constexpr bool buildsInner = ICluster::size == clusterSize;
 
 // Of the pairs of the particles i with a cluster those that are hidden.
-HD inline Wide apartUnless(uint16_t seen, Group i) {
+HD inline Wide apartUnless(uint16_t seen, ICluster i) {
     const unsigned lanes = unsigned(seen) >> (clusterSize * (i.first % clusterSize));
     const uint8_t bits[8] = {uint8_t(lanes & 255), uint8_t(lanes >> 8)};
     return select(Wide::Mask{hn::LoadMaskBits(WideTag(), bits)}, Wide(0), Wide(4));
@@ -39,36 +39,36 @@ HD inline Wide apartUnless(uint16_t seen, Group i) {
 
 // With `due` only clusters of which it says at least `from`. The clusters of which all are seen
 // come first, in one stretch, then one by one those of which thin solids hide some.
-template <Lists lists, uint8_t from = Due, class F>
-HD inline void forNeighbours(const View& v, const Neighbourhood& near, Group i, Vector<Wide> xi,
-                             const F& f, const uint8_t* due = nullptr) {
+template <Lists lists, uint8_t from = Active, class F>
+HD inline void forNeighbours(const View& v, const Neighbourhood& near, ICluster i, Vector<Wide> xi,
+                             const F& f, const uint8_t* active = nullptr) {
     ClusterList& list = near.lists[i.first / clusterSize];
-    const bool pruned = prunes && lists == Lists::Pruned;
-    const uint32_t* clusters = pruned ? list.pruned : list.clusters;
-    const uint16_t* seen = pruned ? list.prunedSeen : list.seen;
-    const uint32_t count = pruned ? list.prunedCount : list.count,
-                   clear = pruned ? list.prunedClear : list.clear;
+    const bool inner = buildsInner && lists == Lists::Inner;
+    const uint32_t* clusters = inner ? list.inner : list.clusters;
+    const uint16_t* seen = inner ? list.innerSeen : list.seen;
+    const uint32_t count = inner ? list.innerCount : list.count,
+                   clear = inner ? list.innerClear : list.clear;
     uint32_t kept = 0, keptClear = 0;
     Wide apart = 0;
     for (uint32_t k = 0, end = clear;;) {
         for (; k < end; ++k) {
-            if (due && due[clusters[k]] < from) continue;
-            const Four j{int(clusters[k]) * clusterSize};
+            if (active && active[clusters[k]] < from) continue;
+            const JCluster j{int(clusters[k]) * clusterSize};
             const Pair<Wide> pair = makePair(v.c, xi, load(near.position, j), apart);
             f(pair, j);
-            if constexpr (prunes && lists == Lists::Prune) {
-                list.pruned[kept] = clusters[k];
+            if constexpr (buildsInner && lists == Lists::BuildInner) {
+                list.inner[kept] = clusters[k];
                 kept += any(pair.distance2 < Wide(v.c.support2));
             }
         }
         if (k == clear) keptClear = kept;
         if (k == count) break;
         apart = apartUnless(seen[k - clear], i), end = k + 1;
-        if constexpr (prunes && lists == Lists::Prune)
-            list.prunedSeen[kept - keptClear] = seen[k - clear];
+        if constexpr (buildsInner && lists == Lists::BuildInner)
+            list.innerSeen[kept - keptClear] = seen[k - clear];
     }
-    if constexpr (prunes && lists == Lists::Prune)
-        list.prunedCount = kept, list.prunedClear = keptClear;
+    if constexpr (buildsInner && lists == Lists::BuildInner)
+        list.innerCount = kept, list.innerClear = keptClear;
 }
 #else
 // Distance from a coordinate, itself in row `own`, to a row; a bit less, as a particle on a face

@@ -75,16 +75,16 @@ struct PlaceSurface {
 
 // On a particle of an object, N, by the floating solid that it is deepest in, -1: by none. That
 // feels the opposite.
-struct Presses {
+struct ContactForces {
     VectorField force;
     ScalarField solid;
 };
 struct SumPresses {
     View v;
     ObjectParticles o;
-    Presses presses;
+    ContactForces presses;
     int solid;
-    HD void addTo(Touch& sum, int i) const {
+    HD void addTo(Wrench& sum, int i) const {
         if (load(presses.solid, i) != real(solid)) return;
         const Vector<real> f = load(presses.force, i),
                            arm = imageOf(v.c, load(o.position, i) - v.solids[solid].centreOfMass);
@@ -105,7 +105,7 @@ struct StretchBonds {
     int cutCount;
     const RigidBody* bodies;  // null: nothing floats
     Springs springs;
-    Presses presses;
+    ContactForces presses;
     HD void operator()(int i) const {
         const Vector<real> x = load(o.position, i), u = load(o.velocity, i);
         const Material material = materials[o.object[i]];
@@ -203,7 +203,7 @@ struct MoveObjects {
         const real dt = real(v.state->dt), radius = load(o.radius, i);
         Vector<real> u = addScaled(load(o.velocity, i), dt, load(o.acceleration, i));
         Vector<real> x = addScaled(load(o.position, i), dt, u);
-        const Constants& c = v.c;
+        const StepParameters& c = v.c;
         c.period.x > 0 ? wrap(x.x, c.period.x)
                        : stop(x.x, u.x, c.low.x + radius, c.high.x - radius);
         c.period.y > 0 ? wrap(x.y, c.period.y)

@@ -90,10 +90,10 @@ public:
     void placeSurface() { device_.forEach(sorted_.slots(), PlaceSurface{particles(), surface()}); }
     int side() const { return sorted_.side(); }
     void flip() { sorted_.flip(); }
-    void forgetLists(const Particles& fluid) {
-        objectsNearFluid_.forget(fluid);
+    void invalidateLists(const Particles& fluid) {
+        objectsNearFluid_.invalidate(fluid);
         for (NeighbourLists* lists : {&fluidNearObjects_, &objectsNearObjects_})
-            lists->forget(sorted_.view());
+            lists->invalidate(sorted_.view());
     }
     void findNeighbours(const Grid& grid, float skin, const Boxes& fluidBoxes,
                         const int* fluidCells) {
@@ -284,7 +284,7 @@ private:
         return !scene.cuts.empty() ||
                scene.objects[size_t(sample_.objects[size_t(i)])].breakingStrain > 0;
     }
-    Presses presses() { return {{press_.data()}, {pressedBy_.data()}}; }
+    ContactForces presses() { return {{press_.data()}, {pressedBy_.data()}}; }
     int padded() const { return (count() + clusterSize - 1) / clusterSize * clusterSize; }
     template <class V>
     void fillVectors(Buffer<real, Device>& buffer, const std::vector<V>& values) {

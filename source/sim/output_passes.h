@@ -9,7 +9,7 @@ namespace spindrift::LANES {
 HD inline real magnitude(Vector<real> a) { return squareRoot(dot(a, a)); }
 HD inline real densityOf(const Particles& p, int i) { return massRatio(p, i) * load(p.density, i); }
 HD inline real pressureOf(const Particles& p, int i) {
-    return load(p.pressureTerm, i) * load(p.density, i) * load(p.density, i);
+    return load(p.pressureOverRho2, i) * load(p.density, i) * load(p.density, i);
 }
 
 // A colour mode: the scalar that a vertex carries.

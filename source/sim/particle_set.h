@@ -33,7 +33,7 @@ public:
                 {density_.data()},
                 {inverseDensity_.data()},
                 {weighsViscosity_ ? viscousVolume_.data() : inverseDensity_.data()},
-                {pressureTerm_.data()},
+                {pressureOverRho2_.data()},
                 {mass_.data()},
                 {outward_.data()},
                 {ownVelocity_.data()},
@@ -47,8 +47,8 @@ public:
                 {kept_.density.data()},
                 {massRatio_.data()},
                 {viscosity_.data()},
-                {level_.data()},
-                due_.data()};
+                {timeBin_.data()},
+                active_.data()};
     }
 
     // Takes over particles with ids firstId, firstId + 1, ...; boundary particles have no
@@ -111,7 +111,7 @@ public:
         sorted.keptDensity = {sortedKept_.density.data()};
         sorted.massRatio = {sortedMassRatio_.data()};
         sorted.viscosity = {sortedViscosity_.data()};
-        sorted.level = {sortedLevel_.data()};
+        sorted.timeBin = {sortedTimeBin_.data()};
         sorted.acceleration = {sortedAcceleration_.data()};
         sorted.densityRate = {sortedDensityRate_.data()};
         device_.forEach(slots, Reorder{order_.data(), view(), sorted});
@@ -125,8 +125,8 @@ public:
         position_.swap(sortedPosition_);
         if (kind_ == Kind::Fluid) velocity_.swap(sortedVelocity_);
         if (sortsDensity()) density_.swap(sortedDensity_);
-        if (hasLevels())
-            level_.swap(sortedLevel_), acceleration_.swap(sortedAcceleration_),
+        if (hasTimeBins())
+            timeBin_.swap(sortedTimeBin_), acceleration_.swap(sortedAcceleration_),
                 densityRate_.swap(sortedDensityRate_);
         massRatio_.swap(sortedMassRatio_), viscosity_.swap(sortedViscosity_);
         kept_.position.swap(sortedKept_.position);
@@ -175,9 +175,9 @@ public:
             if (sortedId_.size() > 0) resizeSorted(slots_);  // a recorded sort can't make room
             return;
         }
-        for (auto* b : {&level_, &sortedLevel_, &sortedAcceleration_, &sortedDensityRate_})
+        for (auto* b : {&timeBin_, &sortedTimeBin_, &sortedAcceleration_, &sortedDensityRate_})
             b->release();
-        due_.release();
+        active_.release();
     }
     // Particles that never move are sorted once.
     void keepOrder() {
@@ -208,7 +208,7 @@ public:
     std::vector<Particle> download(int count, Vec3 origin) const {
         std::vector<int> id = copy(id_);
         std::vector<real> x = copy(position_), u = copy(velocity_), a = copy(acceleration_);
-        std::vector<real> rho = copy(density_), term = copy(pressureTerm_),
+        std::vector<real> rho = copy(density_), term = copy(pressureOverRho2_),
                           ratio = copy(massRatio_);
         const Particles host = onHost(slots_, id, x, u, a, rho, term, ratio);
         std::vector<Particle> out(count);
@@ -230,7 +230,7 @@ public:
         };
         std::vector<real> x = vectors(position_), u = vectors(velocity_),
                           a = vectors(acceleration_);
-        std::vector<real> rho = numbers(density_), term = numbers(pressureTerm_), ratio;
+        std::vector<real> rho = numbers(density_), term = numbers(pressureOverRho2_), ratio;
         if (mixture_) ratio = numbers(massRatio_);
         std::vector<int> own(ids.begin() + first, ids.begin() + first + clusterSize);
         const Particles host = onHost(clusterSize, own, x, u, a, rho, term, ratio);
@@ -243,10 +243,10 @@ private:
         id_.resize(slots);
         position_.resize(vectorSize(slots));
         if (kind_ == Kind::Objects) return;
-        pressureTerm_.resize(slots);
+        pressureOverRho2_.resize(slots);
         if (carriesVelocity_) velocity_.resize(vectorSize(slots));
         if (hasDensity_) density_.resize(slots);
-        if (stepsLocally_) due_.resize(size_t(slots / clusterSize));
+        if (stepsLocally_) active_.resize(size_t(slots / clusterSize));
         if (kind_ == Kind::Walls) {
             mass_.resize(slots);
             if (carriesVelocity_) outward_.resize(vectorSize(slots));
@@ -264,7 +264,7 @@ private:
         if (shifts_)
             for (auto* field : {&shiftVelocity_, &shiftAcceleration_})
                 field->resize(vectorSize(slots));
-        if (stepsLocally_) level_.resize(slots);
+        if (stepsLocally_) timeBin_.resize(slots);
         resizeKept(kept_, slots);
     }
     void resizeSorted(int slots) {
@@ -273,12 +273,13 @@ private:
         if (kind_ == Kind::Fluid) sortedVelocity_.resize(vectorSize(slots));
         if (sortsDensity()) sortedDensity_.resize(slots);
         if (mixture_) sortedMassRatio_.resize(slots), sortedViscosity_.resize(slots);
-        if (hasLevels()) sortedLevel_.resize(slots), sortedAcceleration_.resize(vectorSize(slots));
-        if (hasLevels() && carriesDensity_) sortedDensityRate_.resize(slots);
+        if (hasTimeBins())
+            sortedTimeBin_.resize(slots), sortedAcceleration_.resize(vectorSize(slots));
+        if (hasTimeBins() && carriesDensity_) sortedDensityRate_.resize(slots);
         resizeKept(sortedKept_, slots);
     }
-    bool hasLevels() const { return stepsLocally_ && kind_ == Kind::Fluid; }
-    bool sortsDensity() const { return carriesDensity_ || hasLevels(); }
+    bool hasTimeBins() const { return stepsLocally_ && kind_ == Kind::Fluid; }
+    bool sortsDensity() const { return carriesDensity_ || hasTimeBins(); }
     struct Kept {
         explicit Kept(Device& d) : position(d), velocity(d), density(d) {}
         Buffer<real, Device> position, velocity, density;
@@ -294,7 +295,7 @@ private:
         Particles p{};
         p.slots = slots, p.id = id.data();
         p.position = {x.data()}, p.velocity = {u.data()}, p.acceleration = {a.data()};
-        p.density = {rho.data()}, p.pressureTerm = {term.data()},
+        p.density = {rho.data()}, p.pressureOverRho2 = {term.data()},
         p.massRatio = {ratio.empty() ? nullptr : ratio.data()};
         return p;
     }
@@ -346,10 +347,10 @@ private:
     Kept kept_{device_}, sortedKept_{device_};
     Buffer<real, Device> massRatio_{device_}, viscosity_{device_}, sortedMassRatio_{device_},
         sortedViscosity_{device_};
-    Buffer<uint8_t, Device> due_{device_};
-    Buffer<real, Device> level_{device_}, sortedLevel_{device_}, sortedAcceleration_{device_},
+    Buffer<uint8_t, Device> active_{device_};
+    Buffer<real, Device> timeBin_{device_}, sortedTimeBin_{device_}, sortedAcceleration_{device_},
         sortedDensityRate_{device_};
-    Buffer<real, Device> density_{device_}, inverseDensity_{device_}, pressureTerm_{device_},
+    Buffer<real, Device> density_{device_}, inverseDensity_{device_}, pressureOverRho2_{device_},
         mass_{device_}, outward_{device_}, ownVelocity_{device_}, slip_{device_},
         slipVelocity_{device_}, viscousVolume_{device_};
 };

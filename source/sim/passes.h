@@ -41,10 +41,10 @@ struct Reorder {
         // Empty slots: so far out that no distance to anybody is small or equal.
         const real far = 2 * farAway * real(1 + i % 4);
         store(to.position, i, s < 0 ? Vector<real>{far, far, far} : load(from.position, s));
-        if (to.level.data) store(to.level, i, s < 0 ? resting : load(from.level, s));
-        if (to.level.data)
+        if (to.timeBin.data) store(to.timeBin, i, s < 0 ? resting : load(from.timeBin, s));
+        if (to.timeBin.data)
             store(to.acceleration, i, s < 0 ? Vector<real>{0, 0, 0} : load(from.acceleration, s));
-        if (to.level.data && to.densityRate.data)
+        if (to.timeBin.data && to.densityRate.data)
             store(to.densityRate, i, s < 0 ? real(0) : load(from.densityRate, s));
         if (to.velocity.data)
             store(to.velocity, i, s < 0 ? Vector<real>{0, 0, 0} : load(from.velocity, s));
@@ -66,18 +66,19 @@ struct Reorder {
 // where two walls meet, the wall would become thin. One that is alone, as empty slots are, stays
 // finite.
 template <class Kernel> struct ComputeWallMass {
-    using Index = Group;
+    using Index = ICluster;
     View v;
-    HD void operator()(Group i) const {
-        Real<Group> sum = 0;
+    HD void operator()(ICluster i) const {
+        Real<ICluster> sum = 0;
         forNeighbours<Lists::All>(v, v.wallsNearWalls, i, load(v.walls.position, i),
-                                  [&](const auto& p, Four) LANE_CALL { sum += Kernel::w(p.q); });
+                                  [&](const auto& p, JCluster)
+                                      LANE_CALL { sum += Kernel::w(p.q); });
         const real alone = Kernel::w(real(0));
-        const Real<Group> near = max(total(sum) + Real<Group>((v.c.selfWeight - 1) * alone),
-                                     Real<Group>(real(0.01) * alone));
-        const Real<Group> mass =
-            Real<Group>(v.c.wallFactor * v.c.restDensity / v.c.kernelScale) / near;
-        store(v.walls.mass, i, max(mass, Real<Group>(v.c.wallMassFloor)));
+        const Real<ICluster> near = max(total(sum) + Real<ICluster>((v.c.selfWeight - 1) * alone),
+                                        Real<ICluster>(real(0.01) * alone));
+        const Real<ICluster> mass =
+            Real<ICluster>(v.c.wallFactor * v.c.restDensity / v.c.kernelScale) / near;
+        store(v.walls.mass, i, max(mass, Real<ICluster>(v.c.wallMassFloor)));
     }
 };
 
@@ -95,46 +96,46 @@ template <class I> HD inline void storeState(const View& v, I i, Real<I> rho) {
     const R inverse = R(1) / max(rho, R(real(0.8) * v.c.restDensity));
     store(v.fluid.density, i, rho);
     store(v.fluid.inverseDensity, i, inverse);
-    store(v.fluid.pressureTerm, i, pressure * inverse * inverse);
+    store(v.fluid.pressureOverRho2, i, pressure * inverse * inverse);
 }
 
 // rho_i = sum_j m W + sum_b m_b W.
 template <class Kernel> struct ComputeDensity {
-    using Index = Group;
-    using R = Real<Group>;
+    using Index = ICluster;
+    using R = Real<ICluster>;
     View v;
-    HD void operator()(Group i) const {
-        if (!isDue<dueFrom>(v.fluid, i)) return;
+    HD void operator()(ICluster i) const {
+        if (!isActive<activeFrom>(v.fluid, i)) return;
         const Vector<R> x = load(v.fluid.position, i);
         R fluid = 0;
         forNeighbours<lists>(v, v.fluidNearFluid, i, x,
-                             [&](const auto& p, Four) LANE_CALL { fluid += Kernel::w(p.q); });
+                             [&](const auto& p, JCluster) LANE_CALL { fluid += Kernel::w(p.q); });
         finish(i, x, total(fluid));
     }
-    HD void finish(Group i, Vector<R> x, R fluid) const {
+    HD void finish(ICluster i, Vector<R> x, R fluid) const {
         R walls = 0;
-        forNeighbours<lists>(v, v.wallsNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
+        forNeighbours<lists>(v, v.wallsNearFluid, i, x, [&](const auto& p, JCluster j) LANE_CALL {
             walls = mulAdd(load(v.walls.mass, j), Kernel::w(p.q), walls);
         });
         const R others = fluid + R((v.c.selfWeight - 1) * Kernel::w(real(0)));
         storeState(v, i, R(v.c.kernelScale) * (others + total(walls)));
     }
-    // For lists with each pair once (PairSums).
-    static constexpr Lists lists = Lists::Prune;
-    static constexpr uint8_t dueFrom = Watched;
+    // For lists with each pair once (HalfListSums).
+    static constexpr Lists lists = Lists::BuildInner;
+    static constexpr uint8_t activeFrom = SleepingHalo;
     static constexpr bool opposite = false;
     struct Nothing {};
     ScalarField field() const { return v.fluid.density; }
-    template <class I> HD Nothing state(I) const { return {}; }
+    template <class I> HD Nothing input(I) const { return {}; }
     HD R of(const Pair<R>& p, Nothing, Nothing) const { return Kernel::w(p.q); }
-    HD void finish(Group i) const { finish(i, load(v.fluid.position, i), load(field(), i)); }
+    HD void finish(ICluster i) const { finish(i, load(v.fluid.position, i), load(field(), i)); }
 };
 
 // Where density is carried from step to step.
 struct ApplyEquationOfState {
-    using Index = Quad;
+    using Index = Lanes4;
     View v;
-    HD void operator()(Quad i) const { storeState(v, i, load(v.fluid.density, i)); }
+    HD void operator()(Lanes4 i) const { storeState(v, i, load(v.fluid.density, i)); }
 };
 
 // What the fluid's pressure would be at a boundary particle: p_b = sum_f (p_f + rho_f g.(x_b -
@@ -145,11 +146,11 @@ struct ApplyEquationOfState {
 // wall's velocity the slip length behind its surface (Navier 1823), along it: with an endless one
 // fluid slides freely.
 template <class Kernel, bool sticks, bool dense> struct ExtrapolateToWalls {
-    using Index = Group;
-    using R = Real<Group>;
+    using Index = ICluster;
+    using R = Real<ICluster>;
     View v;
-    HD void operator()(Group b) const {
-        if (!isDue(v.walls, b)) return;
+    HD void operator()(ICluster b) const {
+        if (!isActive(v.walls, b)) return;
         const Vector<real> gravity = gravityNow(v);
         const Vector<R> x = load(v.walls.position, b);
         const Vector<R> force = bodyForce(v.c, gravity, x);
@@ -157,20 +158,22 @@ template <class Kernel, bool sticks, bool dense> struct ExtrapolateToWalls {
         if constexpr (sticks) out = load(v.walls.outward, b);
         R pressure = 0, weight = 0, apart = 0;
         Vector<R> velocity{0, 0, 0};
-        forNeighbours<Lists::All>(v, v.fluidNearWalls, b, x, [&](const auto& p, Four j) LANE_CALL {
-            const R rho = load(v.fluid.density, j), w = Kernel::w(p.q);
-            const R pull = v.fluid.massRatio.data ? load(v.fluid.massRatio, j) * dot(force, p.r)
-                                                  : dot(force, p.r);
-            pressure = mulAdd(w * rho, mulAdd(rho, load(v.fluid.pressureTerm, j), pull), pressure);
-            weight += w;
-            if constexpr (sticks) {
-                velocity = addScaled(velocity, w, load(v.fluid.velocity, j));
-                apart = mulAdd(w, dot(p.r, out), apart);
-            }
-        });
+        forNeighbours<Lists::All>(
+            v, v.fluidNearWalls, b, x, [&](const auto& p, JCluster j) LANE_CALL {
+                const R rho = load(v.fluid.density, j), w = Kernel::w(p.q);
+                const R pull = v.fluid.massRatio.data ? load(v.fluid.massRatio, j) * dot(force, p.r)
+                                                      : dot(force, p.r);
+                pressure =
+                    mulAdd(w * rho, mulAdd(rho, load(v.fluid.pressureOverRho2, j), pull), pressure);
+                weight += w;
+                if constexpr (sticks) {
+                    velocity = addScaled(velocity, w, load(v.fluid.velocity, j));
+                    apart = mulAdd(w, dot(p.r, out), apart);
+                }
+            });
         const R perWeight = R(1) / max(total(weight), R(real(1e-6)));
         const R mean = max(total(pressure) * perWeight, R(v.c.leastPressure));
-        store(v.walls.pressureTerm, b, mean * R(1 / (v.c.restDensity * v.c.restDensity)));
+        store(v.walls.pressureOverRho2, b, mean * R(1 / (v.c.restDensity * v.c.restDensity)));
         if constexpr (sticks)
             storeVelocity(b, ownVelocity(v.walls, b), perWeight * total(velocity), out,
                           perWeight * total(apart));
@@ -181,7 +184,8 @@ template <class Kernel, bool sticks, bool dense> struct ExtrapolateToWalls {
     // `apart` is the distance to the fluid along `out`, times its length. Fluid that touches the
     // wall would ask for any speed: no line is steeper than if the fluid were a third as far away
     // as the wall's particle.
-    HD void storeVelocity(Group b, Vector<R> wall, Vector<R> fluid, Vector<R> out, R apart) const {
+    HD void storeVelocity(ICluster b, Vector<R> wall, Vector<R> fluid, Vector<R> out,
+                          R apart) const {
         const R depth2 = dot(out, out);
         const R away = max(apart - depth2, max(depth2 * R(real(1) / 3), R(real(1e-20))));
         const R ratio = depth2 / away;
@@ -190,7 +194,8 @@ template <class Kernel, bool sticks, bool dense> struct ExtrapolateToWalls {
         store(v.walls.velocity, b, addScaled(wall, ratio, slower));
     }
     // `away` is the fluid's distance from the surface times the length of `out`.
-    HD void slip(Group b, Vector<R> wall, Vector<R> slower, Vector<R> out, R ratio, R away) const {
+    HD void slip(ICluster b, Vector<R> wall, Vector<R> slower, Vector<R> out, R ratio,
+                 R away) const {
         const R stored = load(v.walls.slip, b), zero = 0;
         const R depth2 = max(dot(out, out), R(real(1e-20))), depth = squareRoot(depth2);
         const R length = max(stored, zero - stored), reach = away / depth + length;
@@ -213,37 +218,37 @@ template <class Kernel, bool sticks, bool dense> struct ExtrapolateToWalls {
 // surfaces) and both still feel the opposite. Drops are not stiffened without an end: a particle
 // counts four times at most.
 template <class Kernel, Lists which> struct WeighViscosity {
-    using Index = Group;
-    using R = Real<Group>;
+    using Index = ICluster;
+    using R = Real<ICluster>;
     View v;
-    HD void operator()(Group i) const {
+    HD void operator()(ICluster i) const {
         const Vector<R> x = load(v.fluid.position, i);
         R fluid = 0;
         forNeighbours<lists>(v, v.fluidNearFluid, i, x,
-                             [&](const auto& p, Four) LANE_CALL { fluid += weight(p.q); });
+                             [&](const auto& p, JCluster) LANE_CALL { fluid += weight(p.q); });
         finish(i, x, total(fluid));
     }
     HD static R weight(R q) {
         const R q2 = q * q;
         return q2 * q2 * viscous<Kernel>(q);
     }
-    HD void finish(Group i, Vector<R> x, R fluid) const {
+    HD void finish(ICluster i, Vector<R> x, R fluid) const {
         R walls = 0;
-        forNeighbours<lists>(v, v.wallsNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
+        forNeighbours<lists>(v, v.wallsNearFluid, i, x, [&](const auto& p, JCluster j) LANE_CALL {
             walls = mulAdd(load(v.walls.mass, j), weight(p.q), walls);
         });
         const R around = max(R(v.c.perSurroundings) * (fluid + total(walls)), R(real(0.25)));
         store(v.fluid.viscousVolume, i, R(1 / v.c.restDensity) / squareRoot(around));
     }
-    // For lists with each pair once (PairSums).
+    // For lists with each pair once (HalfListSums).
     static constexpr Lists lists = which;
-    static constexpr uint8_t dueFrom = NotDue;
+    static constexpr uint8_t activeFrom = Inactive;
     static constexpr bool opposite = false;
     struct Nothing {};
     HD ScalarField field() const { return v.fluid.viscousVolume; }
-    template <class I> HD Nothing state(I) const { return {}; }
+    template <class I> HD Nothing input(I) const { return {}; }
     HD R of(const Pair<R>& p, Nothing, Nothing) const { return weight(p.q); }
-    HD void finish(Group i) const { finish(i, load(v.fluid.position, i), load(field(), i)); }
+    HD void finish(ICluster i) const { finish(i, load(v.fluid.position, i), load(field(), i)); }
 };
 
 // The moments of a particle's neighbours, M = -sum_j V_j r grad W, which is 1 on a lattice, and
@@ -254,7 +259,7 @@ template <class R> struct Correction {
     Symmetric<R> inverse;  // of M
     R determinant;         // of M: 1 with neighbours all around, about a third at a flat surface
     R perTrace;            // d / trace of M
-    HD Correction(const Constants& c, const Symmetric<R>& sums) {
+    HD Correction(const StepParameters& c, const Symmetric<R>& sums) {
         const R scale = -c.gradientScale;
         Symmetric<R> m{scale * sums.xx, scale * sums.yy, scale * sums.zz,
                        scale * sums.xy, scale * sums.xz, scale * sums.yz};
@@ -282,32 +287,34 @@ template <class Kernel, Lists lists, class Terms, Forces role = Forces::All> str
 template <class Kernel, Lists which, class... Terms, Forces role>
 struct ComputeForces<Kernel, which, TermList<Terms...>, role> {
     static constexpr Lists lists = which;
-    static constexpr uint8_t dueFrom =
-        which == Lists::Prune ? Watched : Due;  // the density's rate needs the pruned lists
-    using Index = Group;
-    using R = Real<Group>;
+    static constexpr uint8_t activeFrom =
+        which == Lists::BuildInner ? SleepingHalo
+                                   : Active;  // the density's rate needs the inner lists
+    using Index = ICluster;
+    using R = Real<ICluster>;
     static constexpr unsigned needs = TermList<Terms...>::needs;
     View v;
-    HD void operator()(Group i) const {
-        if (!isDue<dueFrom>(v.fluid, i)) return;
+    HD void operator()(ICluster i) const {
+        if (!isActive<activeFrom>(v.fluid, i)) return;
         const Vector<R> x = load(v.fluid.position, i);
-        const State<R> own = state(i);
+        const PairInput<R> own = input(i);
         Acceleration<R> a{};
-        forNeighbours<lists>(v, v.fluidNearFluid, i, x,
-                             [&](const auto& p, Four j) LANE_CALL { add(p, own, state(j), a); });
+        forNeighbours<lists>(v, v.fluidNearFluid, i, x, [&](const auto& p, JCluster j) LANE_CALL {
+            add(p, own, input(j), a);
+        });
         finish(i, x, own, a, {});
     }
-    template <class I> HD State<R> state(I i) const { return loadState<needs>(v.fluid, i); }
+    template <class I> HD PairInput<R> input(I i) const { return loadPairInput<needs>(v.fluid, i); }
     template <class A>
-    HD void add(const Pair<R>& p, const State<R>& own, const State<R>& other, A& a) const {
+    HD void add(const Pair<R>& p, const PairInput<R>& own, const PairInput<R>& other, A& a) const {
         const Weights<R> k = weights<Kernel>(p.q);
         (Terms::add(v.c, p, k, own, other, a), ...);
     }
     // `a`: lane by lane, `whole`: the same for all of a particle's lanes.
-    HD void finish(Group i, Vector<R> x, const State<R>& own, Acceleration<R> a,
+    HD void finish(ICluster i, Vector<R> x, const PairInput<R>& own, Acceleration<R> a,
                    Vector<R> whole) const {
         const Vector<real> gravity = gravityNow(v);
-        forNeighbours<lists>(v, v.wallsNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
+        forNeighbours<lists>(v, v.wallsNearFluid, i, x, [&](const auto& p, JCluster j) LANE_CALL {
             (Terms::addWall(v.c, p, weights<Kernel>(p.q), own, loadWall<needs>(v.walls, j), a),
              ...);
         });
@@ -325,18 +332,18 @@ struct ComputeForces<Kernel, which, TermList<Terms...>, role> {
             return store(v.fluid.acceleration, i, limited(pressure) + other);
         store(v.fluid.acceleration, i, limited(pressure) + other + bodyForce(v.c, gravity, x));
     }
-    // For lists with each pair once (PairSums), where no part of the acceleration is limited.
+    // For lists with each pair once (HalfListSums), where no part of the acceleration is limited.
     static constexpr bool opposite = true;
     VectorField field() const {
         return role == Forces::Added ? v.fluid.addedForce : v.fluid.acceleration;
     }
-    HD Vector<R> of(const Pair<R>& p, const State<R>& own, const State<R>& other) const {
+    HD Vector<R> of(const Pair<R>& p, const PairInput<R>& own, const PairInput<R>& other) const {
         PairAcceleration<R> a{};
         add(p, own, other, a);
         return a.sum(p.r);
     }
-    HD void finish(Group i) const {
-        finish(i, load(v.fluid.position, i), state(i), {}, load(field(), i));
+    HD void finish(ICluster i) const {
+        finish(i, load(v.fluid.position, i), input(i), {}, load(field(), i));
     }
     HD Vector<R> limited(Vector<R> a) const {
         const R limit = v.c.accelerationLimit;
@@ -345,8 +352,8 @@ struct ComputeForces<Kernel, which, TermList<Terms...>, role> {
 };
 
 // The gradient of density that hydrostatic pressure makes.
-template <class R>
-HD inline Vector<R> hydrostaticSlope(const Constants& c, Vector<real> gravityNow, Vector<R> x) {
+template <class R> HD inline Vector<R> hydrostaticSlope(const StepParameters& c,
+                                                        Vector<real> gravityNow, Vector<R> x) {
     return R(c.restDensity / (c.soundSpeed * c.soundSpeed)) * bodyForce(c, gravityNow, x);
 }
 
@@ -355,11 +362,11 @@ HD inline Vector<R> hydrostaticSlope(const Constants& c, Vector<real> gravityNow
 // are of the middle of a step, places of its beginning; so pairs are seen from where they will be
 // in its middle. (Without that, fluid that turns as a solid is compressed, by omega^2 dt a second.)
 template <class Kernel> struct ComputeDensityRate {
-    using Index = Group;
-    using R = Real<Group>;
+    using Index = ICluster;
+    using R = Real<ICluster>;
     View v;
-    HD void operator()(Group i) const {
-        if (!isDue<Watched>(v.fluid, i)) return;
+    HD void operator()(ICluster i) const {
+        if (!isActive<SleepingHalo>(v.fluid, i)) return;
         const Vector<real> gravity = gravityNow(v);
         const Vector<R> x = load(v.fluid.position, i), u = load(v.fluid.velocity, i);
         const R rho = load(v.fluid.density, i);
@@ -371,8 +378,8 @@ template <class Kernel> struct ComputeDensityRate {
         }
         R sum = 0;
         const R ahead = v.c.rateAhead * real(v.state->dt);
-        forNeighbours<Lists::Pruned>(
-            v, v.fluidNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
+        forNeighbours<Lists::Inner>(
+            v, v.fluidNearFluid, i, x, [&](const auto& p, JCluster j) LANE_CALL {
                 const Vector<R> apart = u - load(v.fluid.velocity, j);
                 const R approach = rho * dot(apart, addScaled(p.r, ahead, apart));
                 const R excess = load(v.fluid.density, j) - rho + dot(slope, p.r);
@@ -380,8 +387,8 @@ template <class Kernel> struct ComputeDensityRate {
                              negMulAdd(diffusion, excess, approach), sum);
             });
         R walls = 0;
-        forNeighbours<Lists::Pruned>(
-            v, v.wallsNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
+        forNeighbours<Lists::Inner>(
+            v, v.wallsNearFluid, i, x, [&](const auto& p, JCluster j) LANE_CALL {
                 const Vector<R> apart = u - surfaceVelocity(v.walls, j);
                 walls = mulAdd(Kernel::g(p.q) * load(v.walls.mass, j),
                                dot(apart, addScaled(p.r, ahead, apart)), walls);
@@ -406,13 +413,13 @@ template <class Kernel> struct ComputeDensityRate {
 // room of a particle, not its mass: Sun 2019 takes rho div du as the difference of its two discrete
 // forms, 2 rho du.S. (Without it, drops grow by 1 % a period.)
 template <class Kernel, bool surface> struct ComputeTransport {
-    using Index = Group;
-    using R = Real<Group>;
+    using Index = ICluster;
+    using R = Real<ICluster>;
     View v;
     struct Sums {
         Symmetric<R> moments;
         Vector<R> u, v, w, rho;  // weighted r times the differences of each: gradients
-        Vector<R> uneven, shift;
+        Vector<R> concentrationGradient, shift;
         R laplacian;  // of the density
         HD void add(R weight, Vector<R> r, Vector<R> velocity, R density, R excess, R crowding) {
             const Vector<R> wr = weight * r;
@@ -420,31 +427,31 @@ template <class Kernel, bool surface> struct ComputeTransport {
             u = addScaled(u, velocity.x, wr), v = addScaled(v, velocity.y, wr),
             w = addScaled(w, velocity.z, wr);
             rho = addScaled(rho, density, wr);
-            uneven = uneven + wr;
+            concentrationGradient = concentrationGradient + wr;
             shift = addScaled(shift, crowding, wr);
             laplacian = negMulAdd(weight, excess, laplacian);
         }
     };
-    HD void operator()(Group i) const {
+    HD void operator()(ICluster i) const {
         const Vector<real> gravity = gravityNow(v);
         const Vector<R> x = load(v.fluid.position, i), own = load(v.fluid.velocity, i);
         const R rho = load(v.fluid.density, i), perRest = 1 / v.c.restDensity;
         const Vector<R> slope = hydrostaticSlope(v.c, gravity, x);
         Sums s{};
-        forNeighbours<Lists::Pruned>(
-            v, v.fluidNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
+        forNeighbours<Lists::Inner>(
+            v, v.fluidNearFluid, i, x, [&](const auto& p, JCluster j) LANE_CALL {
                 const R more = load(v.fluid.density, j) - rho;
                 s.add(Kernel::g(p.q) * load(v.fluid.inverseDensity, j), p.r,
                       load(v.fluid.velocity, j) - own, more,
                       surface ? more + dot(slope, p.r) : more, crowding(p.q));
             });
-        forNeighbours<Lists::Pruned>(v, v.wallsNearFluid, i, x,
-                                     [&](const auto& p, Four j) LANE_CALL {
-                                         const R more = load(v.walls.density, j) - rho;
-                                         s.add(Kernel::g(p.q) * load(v.walls.mass, j) * perRest,
-                                               p.r, surfaceVelocity(v.walls, j) - own, more,
-                                               surface ? R(0) : more, crowding(p.q));
-                                     });
+        forNeighbours<Lists::Inner>(v, v.wallsNearFluid, i, x,
+                                    [&](const auto& p, JCluster j) LANE_CALL {
+                                        const R more = load(v.walls.density, j) - rho;
+                                        s.add(Kernel::g(p.q) * load(v.walls.mass, j) * perRest, p.r,
+                                              surfaceVelocity(v.walls, j) - own, more,
+                                              surface ? R(0) : more, crowding(p.q));
+                                    });
         finish(i, rho, s);
     }
     // Sun 2019: 1 + 0.2 (W / W(dx))^4 keeps particles from pairing.
@@ -452,7 +459,7 @@ template <class Kernel, bool surface> struct ComputeTransport {
         const R w = Kernel::w(q) * R(v.c.shiftWeight), w2 = w * w;
         return mulAdd(R(real(0.2)), w2 * w2, R(1));
     }
-    HD void finish(Group i, R rho, const Sums& s) const {
+    HD void finish(ICluster i, R rho, const Sums& s) const {
         const R scale = v.c.gradientScale;
         const Correction<R> correction(v.c, total(s.moments));
         auto gradient = [&](Vector<R> sum)
@@ -460,8 +467,9 @@ template <class Kernel, bool surface> struct ComputeTransport {
         const Vector<R> gradU = gradient(s.u), gradV = gradient(s.v), gradW = gradient(s.w),
                         gradRho = gradient(s.rho);
         const R two = 2;
-        const Vector<R> uneven = (two * correction.perTrace * scale) * total(s.uneven);
-        const Vector<R> inward = scale * total(s.uneven);
+        const Vector<R> concentrationGradient =
+            (two * correction.perTrace * scale) * total(s.concentrationGradient);
+        const Vector<R> inward = scale * total(s.concentrationGradient);
         Vector<R> wanted = (R(-v.c.shifting * real(v.state->speed)) * scale) * total(s.shift);
         R inside = 1;
         if constexpr (surface) {
@@ -473,10 +481,10 @@ template <class Kernel, bool surface> struct ComputeTransport {
         // Half of `laminar` is the viscosity, of `diffusion` the diffusion's.
         const R half = real(0.5),
                 nu = surface ? R(0) : half * R(v.c.laminar) * load(v.fluid.inverseDensity, i);
-        const Vector<R> along = subtractScaled(inside * shift, nu, uneven);
-        const R diffused =
-            surface ? two * scale * total(s.laplacian)
-                    : two * correction.perTrace * scale * total(s.laplacian) - dot(uneven, gradRho);
+        const Vector<R> along = subtractScaled(inside * shift, nu, concentrationGradient);
+        const R diffused = surface ? two * scale * total(s.laplacian)
+                                   : two * correction.perTrace * scale * total(s.laplacian) -
+                                         dot(concentrationGradient, gradRho);
         const R divergence = surface
                                  ? scale * total(s.u.x + s.v.y + s.w.z) - roomLost(shift, inward)
                                  : gradU.x + gradV.y + gradW.z;
@@ -534,7 +542,7 @@ template <bool volume> struct FindExtremes {
 };
 
 // Courant's limit, s.
-HD inline real acousticStep(const Constants& c, real speed) {
+HD inline real acousticStep(const StepParameters& c, real speed) {
     return c.cfl * (c.support / 2) / (c.fastestSound + max(speed, c.solidSpeed));
 }
 // A step is shorter where whole ones would miss the time at which the run stops.
@@ -556,7 +564,7 @@ struct ChooseTimeStep {
     View v;
     const Extremes* extremes;
     HD void operator()(int) const {
-        const Constants& c = v.c;
+        const StepParameters& c = v.c;
         double dt = c.fixedStep;
         real solids = 0;  // that float
         for (int s = 0; s < v.solidCount; ++s) solids = max(solids, v.solids[s].speed);
@@ -580,11 +588,11 @@ struct ChooseTimeStep {
 // spheres of their volume: -k |u - wind| (u - wind) where nothing hides them, which is where their
 // density is no more than what they have of themselves.
 struct ResistMotion {
-    using Index = Quad;
+    using Index = Lanes4;
     View v;
-    HD void operator()(Quad i) const {
-        using R = Real<Quad>;
-        if (!isDue(v.fluid, i)) return;
+    HD void operator()(Lanes4 i) const {
+        using R = Real<Lanes4>;
+        if (!isActive(v.fluid, i)) return;
         const Vector<R> u = load(v.fluid.velocity, i), wind{v.c.wind.x, v.c.wind.y, v.c.wind.z},
                         past = u - wind;
         const R hidden = (load(v.fluid.density, i) * R(1 / v.c.restDensity) - R(v.c.aloneDensity)) *
@@ -601,10 +609,10 @@ struct ResistMotion {
 // The mouse drags the fluid inside a sphere towards its own velocity, strongest in the middle, or
 // pulls it to the middle.
 struct StirFluid {
-    using Index = Quad;
+    using Index = Lanes4;
     View v;
-    HD void operator()(Quad i) const {
-        using R = Real<Quad>;
+    HD void operator()(Lanes4 i) const {
+        using R = Real<Lanes4>;
         const Vector<R> center{v.c.stirCenter.x, v.c.stirCenter.y, v.c.stirCenter.z};
         const Vector<R> drag{v.c.stirVelocity.x, v.c.stirVelocity.y, v.c.stirVelocity.z};
         const Vector<R> d = load(v.fluid.position, i) - center, u = load(v.fluid.velocity, i);

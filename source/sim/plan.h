@@ -11,7 +11,7 @@ template <class Device> template <class K> void SimulationOn<Device>::makePlan()
     switch (scene_.time.integrator) {
         // v += a dt, x += v dt.
         case Integrator::SymplecticEuler:
-            if (hasLocalSteps()) {
+            if (hasBlockTimeSteps()) {
                 stepLocally<K>();
                 break;
             }
@@ -57,7 +57,7 @@ template <class Device> template <class K> void SimulationOn<Device>::makePlan()
             addPass("walls", wallPass<K>(), Initial::No, whyNoWallPressure());
             addPass("pressure",
                     &S::template onFluid<
-                        ComputeForces<K, Lists::Pruned, TermList<PressureForce>, Forces::Alone>>);
+                        ComputeForces<K, Lists::Inner, TermList<PressureForce>, Forces::Alone>>);
             addPass("extremes", &S::countPressure, Initial::No, keepsLists ? "" : noLists);
             addPass("integrate", &S::template onFluid<Integrate<Kick | Drift>>);
             break;
@@ -81,11 +81,11 @@ void SimulationOn<Device>::evaluateForces(Initial initial) {
             : solids_.count() > 0 ? "no solid moves"
                                   : "there are no solids");
     addPass("sort", &S::sort, initial);
-    addPass("rest", &S::findWhoRests, initial,
-            !hasLocalSteps()           ? allAlike
-            : constants_.restSpeed > 0 ? ""
-                                       : "nobody rests (time.rest_speed)");
-    addPass("due", &S::findWhoIsDue, initial, hasLocalSteps() ? "" : allAlike);
+    addPass("rest", &S::findResting, initial,
+            !hasBlockTimeSteps()        ? allAlike
+            : parameters_.restSpeed > 0 ? ""
+                                        : "nobody rests (time.rest_speed)");
+    addPass("due", &S::findActive, initial, hasBlockTimeSteps() ? "" : allAlike);
     addPass("neighbours", &S::findNeighbours, initial, keepsLists ? "" : noLists);
     carriesDensity(scene_)
         ? addPass("equation of state", &S::template onFluid<ApplyEquationOfState>, initial)
@@ -93,14 +93,15 @@ void SimulationOn<Device>::evaluateForces(Initial initial) {
     addPass("walls", wallPass<K>(), initial, whyNoWallPressure());
     addPass("surroundings",
             carriesDensity(scene_) ? &S::template onFluid<WeighViscosity<K, Lists::All>>
-                                   : pairPass<WeighViscosity<K, Lists::Pruned>>(),
+                                   : pairPass<WeighViscosity<K, Lists::Inner>>(),
             initial, whyViscosityIsNotWeighed());
     addPass("forces", forcePass<K>(), initial);
     const char* noTension = scene_.fluid.surfaceTension > 0 ? "" : "fluid.surface_tension is 0";
     addPass("normals", &S::template onFluid<ComputeNormals>, initial, noTension);
     addPass("surface tension", &S::template onFluid<AddSurfaceTension>, initial, noTension);
-    addPass("mixing", pairPass<ComputeForces<MeanKernel, Lists::Pruned, Mixing, Forces::Added>>(),
-            initial, mixes(scene_) ? "" : "fluid.velocity_transfer and fluid.buoyancy are 0");
+    addPass("mixing", pairPass<ComputeForces<MeanKernel, Lists::Inner, Mixing, Forces::Added>>(),
+            initial,
+            hasMixingForces(scene_) ? "" : "fluid.velocity_transfer and fluid.buoyancy are 0");
     addPass("solid forces", &S::findSolidForces, initial, whyNothingFloats());
     addPass("contact", &S::touchObjects, initial, whyNoObjects());
     addPass("resistance", &S::template onFluid<ResistMotion>, initial,
@@ -121,10 +122,10 @@ template <class Device> template <class K> void SimulationOn<Device>::stepLocall
     using S = SimulationOn;
     addPass("step", &S::beginStep);
     evaluateForces<K>(Initial::Yes);
-    addPass("kick", &S::template onFluid<KickDue>);
+    addPass("kick", &S::template onFluid<KickActive>);
     addPass("stir", &S::template onFluid<StirFluid>, Initial::No,
             stir_.radius > 0 ? "" : "nobody stirs");
-    addPass("moment", &S::chooseMoment);
+    addPass("moment", &S::chooseSubstep);
     if (!carriesDensity(scene_)) return addPass("drift", &S::template onFluid<Integrate<Drift>>);
     addPass("density rate", ratePass<K>());
     addPass("drift", &S::template onFluid<Integrate<Drift | DriftDensity>>);
@@ -132,10 +133,11 @@ template <class Device> template <class K> void SimulationOn<Device>::stepLocall
 
 template <class Device> void SimulationOn<Device>::chooseStep() {
     using S = SimulationOn;
-    addPass(
-        "extremes", fillsSpace() ? &S::findExtremes<true> : &S::findExtremes<false>, Initial::No,
-        keepsLists || shifts() || constants_.fixedStep <= 0 ? ""
-                                                            : "the time step is fixed (time.mode)");
+    addPass("extremes", fillsSpace() ? &S::findExtremes<true> : &S::findExtremes<false>,
+            Initial::No,
+            keepsLists || shifts() || parameters_.fixedStep <= 0
+                ? ""
+                : "the time step is fixed (time.mode)");
     addPass("time step", &S::chooseTimeStep);
     addPass("stir", &S::template onFluid<StirFluid>, Initial::No,
             stir_.radius > 0 ? "" : "nobody stirs");
@@ -171,12 +173,12 @@ template <class Device> template <class K> auto SimulationOn<Device>::forcePass(
     -> PassFunction {
     if (fillsSpace())
         return chooseTerms(
-            scene_, [](auto terms) { return forces<K, Lists::Prune>(terms); },
+            scene_, [](auto terms) { return forces<K, Lists::BuildInner>(terms); },
             TermList<CorrectedPressureForce>{},
             TermList<LaminarViscosity<ViscosityForm::Morris>>{});
     if (scene_.simulation.formulation == Formulation::Classic)
         return chooseTerms(
-            scene_, [](auto terms) { return forces<K, Lists::Pruned>(terms); },
+            scene_, [](auto terms) { return forces<K, Lists::Inner>(terms); },
             TermList<PressureForce>{}, TermList<ClassicViscosity>{});
     return withViscosityForm(scene_, [this](auto form) { return forcesOf<K, form.value>(); });
 }
@@ -184,23 +186,23 @@ template <class Device> template <class K> auto SimulationOn<Device>::forcePass(
 template <class Device> template <class K, ViscosityForm form>
 auto SimulationOn<Device>::forcesOf() const -> PassFunction {
     if (scene_.time.integrator == Integrator::Split)
-        return forces<K, Lists::Prune>(Viscosities<form>{});
-    if (isMixture(scene_)) {
+        return forces<K, Lists::BuildInner>(Viscosities<form>{});
+    if (isMultiFluid(scene_)) {
         using Terms = TermList<PressureForce, MixtureViscosity<form>>;
-        return carriesDensity(scene_) ? forces<K, Lists::Prune>(Terms{})
-                                      : pairPass<ComputeForces<K, Lists::Pruned, Terms>>();
+        return carriesDensity(scene_) ? forces<K, Lists::BuildInner>(Terms{})
+                                      : pairPass<ComputeForces<K, Lists::Inner, Terms>>();
     }
     if (carriesDensity(scene_))
         return chooseTerms(
-            scene_, [](auto terms) { return forces<K, Lists::Prune>(terms); },
+            scene_, [](auto terms) { return forces<K, Lists::BuildInner>(terms); },
             TermList<PressureForce>{}, Viscosities<form>{});
     if (scene_.simulation.pressureForm == PressureForm::Mean)
         return pairPass<ComputeForces<
-            K, Lists::Pruned,
+            K, Lists::Inner,
             TermList<MeanPressureForce, LaminarViscosity<form>, ArtificialViscosity>>>();
     return chooseTerms(
         scene_,
-        [this](auto terms) { return pairPass<ComputeForces<K, Lists::Pruned, decltype(terms)>>(); },
+        [this](auto terms) { return pairPass<ComputeForces<K, Lists::Inner, decltype(terms)>>(); },
         TermList<PressureForce>{}, Viscosities<form>{});
 }
 
@@ -213,7 +215,8 @@ template <class Device> template <class K> auto SimulationOn<Device>::loadPass()
             &SimulationOn::template findLoads<ComputeWallLoads<K, decltype(terms)>>);
     };
     return withViscosityForm(scene_, [&](auto form) {
-        if (isMixture(scene_)) return pass(TermList<PressureForce, MixtureViscosity<form.value>>{});
+        if (isMultiFluid(scene_))
+            return pass(TermList<PressureForce, MixtureViscosity<form.value>>{});
         return chooseTerms(scene_, pass, TermList<PressureForce>{}, Viscosities<form.value>{});
     });
 }

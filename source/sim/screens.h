@@ -20,7 +20,7 @@ template <class R> HD inline R nearestImage(R r, real period, real inversePeriod
     return negMulAdd(nearestInteger(periods), R(period), r);
 }
 
-template <class R> HD inline Vector<R> imageOf(const Constants& c, Vector<R> r) {
+template <class R> HD inline Vector<R> imageOf(const StepParameters& c, Vector<R> r) {
     if (c.periodic)
         r = {nearestImage(r.x, c.period.x, c.inversePeriod.x),
              nearestImage(r.y, c.period.y, c.inversePeriod.y),
@@ -83,7 +83,7 @@ HD inline real crossing(const SolidState& s, Vector<real> p, Vector<real> q) {
 
 // The first solid on the way from x to x - r, or -1.
 HD inline int firstCrossed(const Screens& screens, Vector<real> x, Vector<real> r) {
-    const Constants& c = screens.c;
+    const StepParameters& c = screens.c;
     real soonest = 2;
     int first = -1;
     for (int k = 0; k < screens.count; ++k) {
@@ -125,7 +125,7 @@ SCREEN_CALL inline bool sees(const Screens& screens, const int* wallId, Between 
 // Whether a thin solid may be on any way as long as the support radius that ends at x, or its
 // particles be at the other end.
 SCREEN_CALL inline bool isBesideScreen(const Screens& screens, Vector<real> x) {
-    const Constants& c = screens.c;
+    const StepParameters& c = screens.c;
     for (int k = 0; k < screens.count; ++k) {
         const SolidState& s = screens.solids[screens.thin[k]];
         const Vector<real> arm = imageOf(c, x - intoDomain(c, s.middle));
@@ -142,7 +142,7 @@ SCREEN_CALL inline bool isBesideScreen(const Screens& screens, Vector<real> x) {
 struct MeetWalls {
     using Index = int;
     SolidState* solids;
-    Constants c;
+    StepParameters c;
     Vector<real> size;  // m, the domain's
     real spacing;
     HD void operator()(int i) const {

@@ -3,7 +3,7 @@
 #pragma once
 
 #ifdef SPINDRIFT_SIMD
-#include "sim/pair_sums.h"
+#include "sim/half_list_sums.h"
 namespace spindrift::LANES {
 using Boxes = ClusterBoxes;
 using NeighbourLists = ClusterLists;
@@ -23,14 +23,14 @@ struct Sight {
     Particles own{}, other{};
 };
 struct NeighbourLists {
-    template <class... A> void forget(A&&...) {}
+    template <class... A> void invalidate(A&&...) {}
     template <class D> void build(D&, const Grid&, float, const Boxes&, const uint8_t*,
                                   const Boxes&, const int*, bool = false, const Sight& = {}) {}
     ClusterList* data() { return nullptr; }
     PairsSeen pairsSeen() const { return {}; }
     int64_t bytes() const { return 0; }
 };
-struct PairSums {
+struct HalfListSums {
     template <class... A> void run(A&&...) {}
     int64_t bytes() const { return 0; }
 };

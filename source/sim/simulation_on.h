@@ -4,10 +4,10 @@
 
 #include "device/buffer.h"
 #include "sim/collisions.h"
-#include "sim/constants.h"
+#include "sim/step_parameters.h"
 #include "sim/floating.h"
 #include "sim/integrate.h"
-#include "sim/local_steps.h"
+#include "sim/block_time_steps.h"
 #include "sim/objects.h"
 #include "sim/output_passes.h"
 #include "sim/particle_set.h"
@@ -71,7 +71,7 @@ public:
         if (solids_.moves()) walls_.upload(wallsAtHome_, {}, {}, fluidCount_);
         floating_.restart(scene_, state.solids);
         objects_.restart(scene_, state.objects);
-        travel_ = 1e30;
+        displacementBound_ = 1e30;
         // Density and acceleration of the first picture.
         for (Row& row : plan_)
             if (row.initial == Initial::Yes) (this->*row.run)();
@@ -185,7 +185,7 @@ public:
         int64_t lists = 0;
         for (const NeighbourLists* l : {&fluidNearFluid_, &wallsNearFluid_, &fluidNearWalls_})
             lists += l->bytes();
-        return device_.bytes() + lists + objects_.listBytes() + pairSums_.bytes();
+        return device_.bytes() + lists + objects_.listBytes() + halfListSums_.bytes();
     }
 
     std::vector<PassTime> times() override {
@@ -216,7 +216,7 @@ private:
 
     // A mixture's knobs, particle by particle.
     void fillMixture() {
-        if (!isMixture(scene_) || fluid_.slots() == 0) return;
+        if (!isMultiFluid(scene_) || fluid_.slots() == 0) return;
         CHECK(int(bodies_.size()) == fluidCount_);
         std::vector<float> ratios, viscosities;
         for (const uint16_t body : bodies_) {
@@ -227,26 +227,27 @@ private:
         fluid_.fillMixture(ratios, viscosities);
     }
     void refresh(const Scene& scene) {
-        const bool before = pairsOnce();
+        const bool before = usesHalfLists();
         scene_ = scene;
-        if (pairsOnce() != before) travel_ = 1e30;  // other lists
+        if (usesHalfLists() != before) displacementBound_ = 1e30;  // other lists
         const bool sticksNow = fluidSticks() && walls_.carryVelocity();
         if (letsSlip(scene)) walls_.letSlip();
         withKernel(scene_.simulation.kernel, [&](auto kernel) {
             using K = decltype(kernel);
-            constants_ = makeConstants<K>(scene_, extent_);
-            objects_.setLaw(scene_, constants_.soundSpeed);
-            constants_.maxStep = min(constants_.maxStep, real(objects_.longestStep()));
+            parameters_ = makeStepParameters<K>(scene_, extent_);
+            objects_.setLaw(scene_, parameters_.soundSpeed);
+            parameters_.maxStep = min(parameters_.maxStep, real(objects_.longestStep()));
             floating_.setSprings(scene_, longestStep());
             makePlan<K>();
         });
-        if (solids_.anyThin()) solids_.screen(constants_);
+        if (solids_.anyThin()) solids_.screen(parameters_);
         addBuffers();
         fluid_.weighViscosity(!*whyViscosityIsNotWeighed());
-        fluid_.stepLocally(hasLocalSteps());
-        walls_.stepLocally(hasLocalSteps());
-        if (hasLocalSteps() && !localSteps_.used())
-            localSteps_.resize(grid_, real(2 * supportRadius(scene_) * (1 + scene_.compute.skin)));
+        fluid_.stepLocally(hasBlockTimeSteps());
+        walls_.stepLocally(hasBlockTimeSteps());
+        if (hasBlockTimeSteps() && !blockTimeSteps_.used())
+            blockTimeSteps_.resize(grid_,
+                                   real(2 * supportRadius(scene_) * (1 + scene_.compute.skin)));
         // A face slides at another speed or lets fluid slip, or walls are to know which way they
         // face.
         if (sticksNow || ((wallsMove() || walls_.slips()) && !solids_.moves()))
@@ -283,17 +284,17 @@ private:
     // Of lists that hold each pair once where they do, and of all neighbours otherwise.
     template <class Pass> PassFunction pairPass() const {
         if constexpr (keepsLists)
-            if (pairsOnce()) return &SimulationOn::template onPairs<Pass>;
+            if (usesHalfLists()) return &SimulationOn::template onPairs<Pass>;
         return &SimulationOn::template onFluid<Pass>;
     }
     // Where all that pairs do they do to both: carried density changes at rates that differ, and a
     // limit, which the classic formulation has, is one on a part of the whole.
-    bool pairsOnce() const {
+    bool usesHalfLists() const {
         return keepsLists && !carriesDensity(scene_) &&
                scene_.simulation.formulation != Formulation::Classic &&
                scene_.simulation.accelerationLimit <= 0;
     }
-    bool hasLocalSteps() const { return scene_.time.mode == TimeMode::Local; }
+    bool hasBlockTimeSteps() const { return scene_.time.mode == TimeMode::Local; }
     bool shifts() const { return shiftsParticles(scene_); }
     bool fillsSpace() const {
         return scene_.simulation.formulation == Formulation::TransportVelocity;
@@ -301,7 +302,7 @@ private:
     // Or there are terms that would ask.
     bool fluidSticks() const {
         const bool asked =
-            isMixture(scene_) || scene_.simulation.pressureForm == PressureForm::Mean;
+            isMultiFluid(scene_) || scene_.simulation.pressureForm == PressureForm::Mean;
         return wallsCarryPressure() && (asked || largestViscosity(scene_) > 0 || letsSlip(scene_));
     }
     template <class... Ts> void noteTerms(TermList<Ts...>) {
@@ -313,9 +314,9 @@ private:
             return "there is no laminar viscosity";
         if (viscosityForm(scene_) != ViscosityForm::Monaghan)
             return "only Monaghan's form of viscosity asks for it";
-        if (hasLocalSteps()) return "steps are local (time.mode)";
+        if (hasBlockTimeSteps()) return "steps are local (time.mode)";
         const double nu = largestViscosity(scene_) / scene_.fluid.restDensity,
-                     reach = double(constants_.soundSpeed) * double(constants_.support),
+                     reach = double(parameters_.soundSpeed) * double(parameters_.support),
                      numerical = std::max(1e-3, scene_.fluid.artificialViscosity / 16.0) * reach;
         return nu < numerical ? "viscosity is less than 1e-3 c R, or than the artificial one" : "";
     }
@@ -341,19 +342,19 @@ private:
     void stepOnce() {
         if (allRest()) {
             beginStep();
-            device_.forEach(1, ChooseMoment{view(), localSteps_.motion(), fluidCount_});
+            device_.forEach(1, ChooseSubstep{view(), blockTimeSteps_.motion(), fluidCount_});
             return;
         }
         device_.step([&] {
             do runPlan();
-            while (hasLocalSteps() && clock().moment != 0);
+            while (hasBlockTimeSteps() && clock().substep != 0);
         });
         if (objects_.isDriven() && objects_.exchange(clock().time)) outdateRecordings();
     }
     // There is nothing to be done but to let time pass. (A GPU would have to be asked.)
     bool allRest() {
-        return !Device::recordsSteps && hasLocalSteps() && clock().allRest && stir_.radius <= 0 &&
-               !solids_.moves();
+        return !Device::recordsSteps && hasBlockTimeSteps() && clock().allRest &&
+               stir_.radius <= 0 && !solids_.moves();
     }
     // One recording for each side of the particles' buffers; walls are sorted only when they move.
     void stepFromRecording() {
@@ -382,13 +383,13 @@ private:
                 scene_.fluid.restDensity / restDensity(scene_, scene_.fluid.bodies[bodies_[i]]);
         for (size_t i = 0; i < state.particles.pressures.size(); ++i) {
             const double power =
-                std::max(1 + double(state.particles.pressures[i]) / constants_.stiffness, 0.1);
+                std::max(1 + double(state.particles.pressures[i]) / parameters_.stiffness, 0.1);
             const float density =
-                float(constants_.restDensity * std::pow(power, 1.0 / constants_.gamma));
+                float(parameters_.restDensity * std::pow(power, 1.0 / parameters_.gamma));
             if (i == densities.size()) densities.push_back(density);
             if (densities[i] == 0) densities[i] = density;
         }
-        densities.resize(state.particles.positions.size(), float(constants_.restDensity));
+        densities.resize(state.particles.positions.size(), float(parameters_.restDensity));
         return densities;
     }
     // Times survive a change of plan.
@@ -405,9 +406,9 @@ private:
     }
     // s, that a step can take.
     double longestStep() const {
-        return constants_.fixedStep > 0
-                   ? double(constants_.fixedStep)
-                   : double(min(acousticStep(constants_, 0), constants_.maxStep));
+        return parameters_.fixedStep > 0
+                   ? double(parameters_.fixedStep)
+                   : double(min(acousticStep(parameters_, 0), parameters_.maxStep));
     }
     // Those that stood still until now as well: their particles are sorted and placed from here on.
     void letSolidsMove() {
@@ -449,20 +450,22 @@ private:
         floating_.move(view(), particleMass(scene_), hold_, 0.5 * halvesOfKick, drifts ? 1 : 0);
     }
     template <class Pass> void onFluid() { device_.forEach(fluid_.slots(), Pass{view()}); }
-    template <class Pass> void onPairs() { pairSums_.run(device_, fluidNearFluid_, Pass{view()}); }
+    template <class Pass> void onPairs() {
+        halfListSums_.run(device_, fluidNearFluid_, Pass{view()});
+    }
     template <class Pass> void onWalls() { device_.forEach(walls_.slots(), Pass{view()}); }
     // Order and lists hold until two particles may have come closer by the skin.
-    bool nothingMovedFar() const { return keepsLists && travel_ < skin_ / 2; }
+    bool nothingMovedFar() const { return keepsLists && displacementBound_ < skin_ / 2; }
     // Where few are awake lists are short and the sort, which knows no rest, is what costs: both
     // cost the same with a skin that grows as 1/sqrt(share awake). Blocks are large enough for 0.4
     // support radii. Where lists would not outlive a step, by what the last one `moved` (unless
     // nobody knows), they reach no further than they must.
     float chooseSkin(double moved) {
         const float asked = scene_.compute.skin,
-                    share = hasLocalSteps() ? float(std::max(clock().awake, 1e-3)) : 1;
+                    share = hasBlockTimeSteps() ? float(std::max(clock().awake, 1e-3)) : 1;
         const float skin =
             supportRadius(scene_) * std::max(asked, std::min(asked / std::sqrt(share), 0.4f));
-        return travel_ < 1e29 && moved >= skin / 2 ? 0 : skin;
+        return displacementBound_ < 1e29 && moved >= skin / 2 ? 0 : skin;
     }
     void moveSolids() { placeSolids(0); }
     void moveSolidsHalfWay() {
@@ -481,12 +484,13 @@ private:
         solids_.placeWalls(view());
     }
     void sort() {
-        const double moved = travel_ - std::exchange(travelBefore_, travel_);
+        const double moved =
+            displacementBound_ - std::exchange(displacementBoundBefore_, displacementBound_);
         if (nothingMovedFar()) return;
         if constexpr (keepsLists) skin_ = chooseSkin(moved);
         fluid_.sort(grid_);
         boxes_.compute(device_, fluid_.view());
-        if (hasLocalSteps()) onFluid<ApplyEquationOfState>();  // of those who aren't due
+        if (hasBlockTimeSteps()) onFluid<ApplyEquationOfState>();  // of those who aren't due
         if (solids_.moves()) {
             walls_.sort(grid_);
             solids_.placeWalls(view());  // all but their places, which the sort took along
@@ -495,16 +499,16 @@ private:
         if (solids_.anyThin()) findScreens();
         if (objects_.count() > 0) {
             objects_.sort(grid_);
-            objects_.forgetLists(fluid_.view());
+            objects_.invalidateLists(fluid_.view());
         }
         for (NeighbourLists* lists : {&fluidNearFluid_, &wallsNearFluid_})
-            lists->forget(fluid_.view());
-        fluidNearWalls_.forget(walls_.view());
-        travel_ = travelBefore_ = 0;
+            lists->invalidate(fluid_.view());
+        fluidNearWalls_.invalidate(walls_.view());
+        displacementBound_ = displacementBoundBefore_ = 0;
     }
     // On which sides of thin solids clusters are.
     void findScreens() {
-        solids_.meetWalls(constants_);
+        solids_.meetWalls(parameters_);
         const float reach = supportRadius(scene_) + skin_;
         boxes_.findSides(device_, fluid_.view(), solids_.screens(), reach, false);
         wallBoxes_.findSides(device_, walls_.view(), solids_.screens(), reach, true);
@@ -513,20 +517,20 @@ private:
     void findNeighbours() {
         const View v = view();
         const float reach = supportRadius(scene_) + skin_;
-        fluidNearFluid_.build(device_, grid_, reach, boxes_, v.fluid.due, boxes_,
-                              fluid_.cellStart(), pairsOnce(),
+        fluidNearFluid_.build(device_, grid_, reach, boxes_, v.fluid.active, boxes_,
+                              fluid_.cellStart(), usesHalfLists(),
                               {v.screens, Between::Fluid, v.fluid, v.fluid});
-        wallsNearFluid_.build(device_, grid_, reach, boxes_, v.fluid.due, wallBoxes_,
+        wallsNearFluid_.build(device_, grid_, reach, boxes_, v.fluid.active, wallBoxes_,
                               walls_.cellStart(), false,
                               {v.screens, Between::FluidAndWalls, v.fluid, v.walls});
         if (objects_.count() > 0) objects_.findNeighbours(grid_, skin_, boxes_, fluid_.cellStart());
         if (!wallsCarryPressure()) return;
-        const uint8_t* due = solids_.count() > 0 ? nullptr : v.walls.due;
-        fluidNearWalls_.build(device_, grid_, reach, wallBoxes_, due, boxes_, fluid_.cellStart(),
+        const uint8_t* active = solids_.count() > 0 ? nullptr : v.walls.active;
+        fluidNearWalls_.build(device_, grid_, reach, wallBoxes_, active, boxes_, fluid_.cellStart(),
                               false, {v.screens, Between::WallsAndFluid, v.walls, v.fluid});
     }
     template <bool volume> void findExtremes() {
-        device_.reduce(fluid_.slots(), FindExtremes<volume>{fluid_.view(), constants_.restDensity},
+        device_.reduce(fluid_.slots(), FindExtremes<volume>{fluid_.view(), parameters_.restDensity},
                        extremes_.data());
         if (objects_.count() > 0) objects_.findSpeed(clock_.data(), extremes_.data());
     }
@@ -536,36 +540,37 @@ private:
                              : scene_.time.integrator == Integrator::Split            ? 0
                                                                                       : 1;
         if constexpr (keepsLists)
-            travel_ += share * clock_.data()->dt * largestSpeed(clock_.data()->dt);
+            displacementBound_ += share * clock_.data()->dt * largestSpeed(clock_.data()->dt);
     }
     void beginStep() { device_.forEach(1, BeginStep{view()}); }
-    void findWhoRests() {
-        device_.forEach(int(localSteps_.blocks()), MeasureBlocks{view()});
-        device_.forEach(int(localSteps_.blocks()), RestBlocks{view()});
+    void findResting() {
+        device_.forEach(int(blockTimeSteps_.blocks()), MeasureBlocks{view()});
+        device_.forEach(int(blockTimeSteps_.blocks()), RestBlocks{view()});
     }
-    void findWhoIsDue() {
-        allDue_ = !Device::recordsSteps && clock().allDue;  // (a recording can't look)
-        if (allDue_) return;
-        device_.forEach(fluid_.slots() / clusterSize, FindDueClusters{view()});
-        device_.forEach(int(localSteps_.blocks()), FindDueBlocks{view()});
-        device_.forEach(walls_.slots() / clusterSize, ForgetDue{walls_.view()});
-        device_.forEach(int(localSteps_.blocks()), FindNearBlocks{view()});
-        device_.forEach(int(localSteps_.blocks()), SpreadDue{view()});
+    void findActive() {
+        allActive_ = !Device::recordsSteps && clock().allActive;  // (a recording can't look)
+        if (allActive_) return;
+        device_.forEach(fluid_.slots() / clusterSize, FindActiveClusters{view()});
+        device_.forEach(int(blockTimeSteps_.blocks()), FindActiveBlocks{view()});
+        device_.forEach(walls_.slots() / clusterSize, ClearActive{walls_.view()});
+        device_.forEach(int(blockTimeSteps_.blocks()), FindNearBlocks{view()});
+        device_.forEach(int(blockTimeSteps_.blocks()), SpreadActive{view()});
     }
-    void chooseMoment() {
+    void chooseSubstep() {
         device_.reduce(fluid_.slots(), FindMotion{fluid_.view(), clock_.data()},
-                       localSteps_.motion());
-        device_.forEach(1, ChooseMoment{view(), localSteps_.motion(), fluidCount_});
+                       blockTimeSteps_.motion());
+        device_.forEach(1, ChooseSubstep{view(), blockTimeSteps_.motion(), fluidCount_});
         if constexpr (keepsLists) {
             const double solids = solids_.largestSpeed();
-            travel_ += clock_.data()->dt * std::max({clock_.data()->speed, stir_.speed(), solids});
+            displacementBound_ +=
+                clock_.data()->dt * std::max({clock_.data()->speed, stir_.speed(), solids});
         }
     }
     void wake() {
-        if (!hasLocalSteps()) return;
-        localSteps_.wake();
+        if (!hasBlockTimeSteps()) return;
+        blockTimeSteps_.wake();
         StepState awake = clock();
-        awake.allDue = awake.allRest = false, awake.awake = 1;
+        awake.allActive = awake.allRest = false, awake.awake = 1;
         device_.upload(clock_.data(), &awake, 1);
         device_.forEach(fluid_.slots(), WakeParticles{fluid_.view()});
     }
@@ -574,7 +579,8 @@ private:
     // nobody knew.
     void countPressure() {
         findExtremes<false>();
-        if constexpr (keepsLists) travel_ += clock_.data()->dt * largestSpeed(clock_.data()->dt);
+        if constexpr (keepsLists)
+            displacementBound_ += clock_.data()->dt * largestSpeed(clock_.data()->dt);
     }
     void countCorrection() {
         findExtremes<false>();
@@ -583,7 +589,7 @@ private:
         const double start = std::max<double>(clock.speed, stir_.speed());
         const double pull = std::sqrt(extremes_.data()->acceleration2);
         const double own = 0.5 * (start + clock.dt * pull) + (shifts() ? 0.75 * clock.speed : 0);
-        travel_ += clock.dt * std::max(own, 0.5 * double(solids_.largestSpeed()));
+        displacementBound_ += clock.dt * std::max(own, 0.5 * double(solids_.largestSpeed()));
     }
     // Of any particle at the end of a step of length dt, stirring included.
     double largestSpeed(double dt) const {
@@ -598,7 +604,7 @@ private:
     void weighWalls() {
         walls_.sort(grid_);
         wallBoxes_.compute(device_, walls_.view());
-        wallsNearWalls_.forget(walls_.view());
+        wallsNearWalls_.invalidate(walls_.view());
         wallsNearWalls_.build(device_, grid_, supportRadius(scene_), wallBoxes_, nullptr,
                               wallBoxes_, walls_.cellStart());
         withKernel(scene_.simulation.kernel, [&](auto kernel) {
@@ -622,11 +628,11 @@ private:
                 Between::WallsAndFluid},
                {wallsNearWalls_.data(), walls_.cellStart(), walls_.view().position},
                grid_,
-               constants_,
+               parameters_,
                clock_.data(),
-               localSteps_.view(),
+               blockTimeSteps_.view(),
                solids_.screens()};
-        if (allDue_) v.fluid.due = v.walls.due = nullptr;
+        if (allActive_) v.fluid.active = v.walls.active = nullptr;
         v.c.stirCenter = toVector(stir_.center - scene_.domain.min);
         v.c.stirVelocity = toVector(stir_.velocity);
         v.c.stirRadius = stir_.radius, v.c.stirRate = stir_.rate, v.c.stirPull = stir_.pull;
@@ -637,7 +643,7 @@ private:
     Range writeSurface(Vertex* out);
     template <class Value> Range write(const Particles& p, Vertex* out);
     void addBuffers() {
-        fluid_.addForces(pairsOnce() && mixes(scene_),
+        fluid_.addForces(usesHalfLists() && hasMixingForces(scene_),
                          scene_.fluid.surfaceTension > 0 || showsSurface_);
     }
 
@@ -651,7 +657,7 @@ private:
     std::vector<int> solidSizes_;
     FluidExtent extent_;
     Grid grid_;
-    Constants constants_{};
+    StepParameters parameters_{};
     std::vector<Row> plan_;
     std::vector<PlanRow> rows_;
     std::vector<PassTime> times_;
@@ -663,9 +669,9 @@ private:
     PassFunction findLoads_ = nullptr;
     Buffer<StepState, Device> clock_{device_};
     Buffer<Extremes, Device> extremes_{device_};
-    LocalSteps<Device> localSteps_{device_};
+    BlockTimeSteps<Device> blockTimeSteps_{device_};
     bool showsSurface_ = false;                // somebody has asked
-    bool allDue_ = false;                      // at this moment: flags are needless then
+    bool allActive_ = false;                   // at this moment: flags are needless then
     Buffer<Vertex, Device> staging_{device_};  // for vertices that the host is to have
     bool measureNext_ = true;
     typename Device::Recording recordings_[8];
@@ -673,12 +679,12 @@ private:
     static constexpr bool keepsLists = clusterSize > 1;
     static constexpr const char* allAlike = "all take the same steps (time.mode)";
     static constexpr const char* noLists = "rows of cells are walked instead of lists";
-    double travel_ = 1e30;        // m, bound of any particle's way since the lists were built
-    double travelBefore_ = 1e30;  // the same when sorting was last considered
-    float skin_ = 0;              // m, how much further than the support these reach
+    double displacementBound_ = 1e30;  // m, bound of any particle's way since the lists were built
+    double displacementBoundBefore_ = 1e30;  // the same when sorting was last considered
+    float skin_ = 0;                         // m, how much further than the support these reach
     Boxes boxes_, wallBoxes_;
     NeighbourLists fluidNearFluid_, wallsNearFluid_, fluidNearWalls_, wallsNearWalls_;
-    PairSums pairSums_;
+    HalfListSums halfListSums_;
 };
 
 }  // namespace spindrift::LANES

@@ -60,7 +60,7 @@ HD inline real surface(const SolidState& s, Vector<real> p, Vector<real>& n) {
 }
 
 // The image of x in the domain.
-HD inline Vector<real> intoDomain(const Constants& c, Vector<real> x) {
+HD inline Vector<real> intoDomain(const StepParameters& c, Vector<real> x) {
     return {x.x - c.period.x * roundDown(x.x * c.inversePeriod.x),
             x.y - c.period.y * roundDown(x.y * c.inversePeriod.y),
             x.z - c.period.z * roundDown(x.z * c.inversePeriod.z)};

@@ -9,7 +9,7 @@
 #include "scene/motion.h"
 #include "scene/sample_solid.h"
 #include "scene/thin_solid.h"
-#include "sim/constants.h"
+#include "sim/step_parameters.h"
 #include "sim/neighbours.h"
 #include "sim/rigid.h"
 #include "sim/terms.h"
@@ -197,8 +197,8 @@ struct KeepWallMass {
 // per fluid particle's mass; of pressure, and of the others.
 template <class Kernel, class Terms> struct ComputeWallLoads;
 template <class Kernel, class... Terms> struct ComputeWallLoads<Kernel, TermList<Terms...>> {
-    using Index = Group;
-    using R = Real<Group>;
+    using Index = ICluster;
+    using R = Real<ICluster>;
     static constexpr unsigned needs = TermList<Terms...>::needs;
     View v;
     VectorField pressure, other;
@@ -206,18 +206,18 @@ template <class Kernel, class... Terms> struct ComputeWallLoads<Kernel, TermList
     // it is none at the boundary particle.
     VectorField seen, seenAtRest;
     WallsAtHome home;
-    HD void operator()(Group b) const {
+    HD void operator()(ICluster b) const {
         if (!home.hasSolid(v.walls, firstOf(b) / clusterSize)) return;
         const Wall<R> wall = loadWall<needs>(v.walls, b);
         Acceleration<R> a{};
         const Vector<R> x = load(v.walls.position, b);
         const Vector<R> pull = R(1 / v.c.restDensity) * bodyForce(v.c, gravityNow(v), x);
         Vector<R> seen{0, 0, 0}, atRest{0, 0, 0};
-        forNeighbours<Lists::All>(v, v.fluidNearWalls, b, x, [&](auto p, Four j) LANE_CALL {
+        forNeighbours<Lists::All>(v, v.fluidNearWalls, b, x, [&](auto p, JCluster j) LANE_CALL {
             p.r = R(-1) * p.r;
             const Vector<R> slope = Kernel::g(p.q) * p.r;
             seen = seen + slope, atRest = addScaled(atRest, dot(pull, p.r), slope);
-            const State<R> fluid = loadState<needs>(v.fluid, j);
+            const PairInput<R> fluid = loadPairInput<needs>(v.fluid, j);
             (Terms::addWall(v.c, p, weights<Kernel>(p.q), fluid, wall, a), ...);
         });
         const R scale = -v.c.gradientScale;
@@ -283,7 +283,7 @@ struct BesideGround {
         return min(toBox(x), toSolids(x)) - depth;
     }
     HD real toBox(Vector<real> x) const {
-        const Constants& c = v.c;
+        const StepParameters& c = v.c;
         real nearest = 1e30;
         auto side = [&](real at, real low, real high)
                         LANE_CALL { nearest = min(nearest, min(at - low, high - at)); };
@@ -432,14 +432,14 @@ public:
         device_.forEach(count_, MeasureTurn{states_.data(), state});
     }
     // As thin ones separate fluid and walls.
-    void screen(const Constants& c) {
+    void screen(const StepParameters& c) {
         const Screens screens{states_.data(), thin_.data(),    int(thin_.size()), c,
                               firstId_,       solidOf_.data(), {face_.data()},    {least_.data()}};
         screens_.resize(1);
         device_.upload(screens_.data(), &screens, 1);
     }
     const Screens* screens() const { return screens_.size() > 0 ? screens_.data() : nullptr; }
-    void meetWalls(const Constants& c) {
+    void meetWalls(const StepParameters& c) {
         device_.forEach(count_, MeetWalls{states_.data(), c, size_, spacing_});
     }
     void placeWalls(const View& v) { device_.forEach(v.walls.slots, PlaceWalls{v, home()}); }

@@ -14,9 +14,9 @@ struct StepState {
     double longest = 0;   // s, what the last step could have been without a stop
     // With local steps `dt` is the time to the next moment at which a particle is due, `longest`
     // the step of calm fluid and of the whole.
-    int moment = 0;          // where in it the run stands, in 64ths; outside of step() 0
-    int level = 0;           // particles are due whose steps are longest / 2^level and shorter
-    bool allDue = false;     // at this moment, for certain
+    int substep = 0;         // where in it the run stands, in 64ths; outside of step() 0
+    int timeBin = 0;         // particles are due whose steps are longest / 2^level and shorter
+    bool allActive = false;  // at this moment, for certain
     bool allRest = false;    // until who rests is decided again
     double awake = 1;        // share of the particles that don't rest
     double evaluations = 0;  // of a particle's forces, since the beginning of the run

@@ -14,20 +14,20 @@ namespace spindrift::LANES {
 // Drops with theta = 60, 90 and 120 degrees all drew up and left the wall.)
 struct ComputeNormals {
     using Kernel = MeanKernel;
-    using Index = Group;
-    using R = Real<Group>;
+    using Index = ICluster;
+    using R = Real<ICluster>;
     View v;
-    HD void operator()(Group i) const {
+    HD void operator()(ICluster i) const {
         Vector<R> sum{0, 0, 0};
         const Vector<R> x = load(v.fluid.position, i);
-        forNeighbours<lists>(v, v.fluidNearFluid, i, x, [&](const auto& p, Four) LANE_CALL {
+        forNeighbours<lists>(v, v.fluidNearFluid, i, x, [&](const auto& p, JCluster) LANE_CALL {
             sum = addScaled(sum, Kernel::g(p.q), p.r);
         });
         finish(i, x, total(sum));
     }
-    HD void finish(Group i, Vector<R> x, Vector<R> fluid) const {
+    HD void finish(ICluster i, Vector<R> x, Vector<R> fluid) const {
         Vector<R> walls{0, 0, 0};
-        forNeighbours<lists>(v, v.wallsNearFluid, i, x, [&](const auto& p, Four j) LANE_CALL {
+        forNeighbours<lists>(v, v.wallsNearFluid, i, x, [&](const auto& p, JCluster j) LANE_CALL {
             walls = addScaled(walls, load(v.walls.mass, j) * Kernel::g(p.q), p.r);
         });
         const Vector<R> n = R(v.c.normalScale) * (fluid + total(walls));
@@ -35,24 +35,24 @@ struct ComputeNormals {
         store(v.fluid.normal, i, select(length > least, R(1) / max(length, least), zero) * n);
         store(v.fluid.normalLength, i, length);
     }
-    // For lists with each pair once (PairSums).
-    static constexpr Lists lists = Lists::Pruned;
-    static constexpr uint8_t dueFrom = NotDue;
+    // For lists with each pair once (HalfListSums).
+    static constexpr Lists lists = Lists::Inner;
+    static constexpr uint8_t activeFrom = Inactive;
     static constexpr bool opposite = true;
     struct Nothing {};
     HD VectorField field() const { return v.fluid.normal; }
-    template <class I> HD Nothing state(I) const { return {}; }
+    template <class I> HD Nothing input(I) const { return {}; }
     HD Vector<R> of(const Pair<R>& p, Nothing, Nothing) const { return Kernel::g(p.q) * p.r; }
-    HD void finish(Group i) const { finish(i, load(v.fluid.position, i), load(field(), i)); }
+    HD void finish(ICluster i) const { finish(i, load(v.fluid.position, i), load(field(), i)); }
 };
 
 // For the eye: 1 where the colour's gradient is more than half of what it is at a flat surface,
 // otherwise 0. In place of the normal, for LeaveOutSpray.
 struct TagSurface {
-    using Index = Quad;
+    using Index = Lanes4;
     View v;
-    HD void operator()(Quad i) const {
-        using R = Real<Quad>;
+    HD void operator()(Lanes4 i) const {
+        using R = Real<Lanes4>;
         const R steep =
             select(load(v.fluid.normalLength, i) > R(real(0.75) / v.c.support), R(1), R(0));
         store(v.fluid.normal, i, Vector<R>{steep, R(0), R(0)});
@@ -64,28 +64,28 @@ struct TagSurface {
 // one-sided surroundings too, at walls above all.
 struct LeaveOutSpray {
     using Kernel = MeanKernel;
-    using Index = Group;
-    using R = Real<Group>;
+    using Index = ICluster;
+    using R = Real<ICluster>;
     View v;
-    HD void operator()(Group i) const {
+    HD void operator()(ICluster i) const {
         R sum = 0;
         forNeighbours<lists>(v, v.fluidNearFluid, i, load(v.fluid.position, i),
-                             [&](const auto& p, Four) LANE_CALL { sum += Kernel::w(p.q); });
+                             [&](const auto& p, JCluster) LANE_CALL { sum += Kernel::w(p.q); });
         finish(i, total(sum));
     }
-    HD void finish(Group i, R company) const {
+    HD void finish(ICluster i, R company) const {
         const R tag = load(v.fluid.normal, i).x;
         store(v.fluid.normalLength, i, select(company > R(v.c.leastCompany), tag, R(0)));
     }
-    // For lists with each pair once (PairSums).
-    static constexpr Lists lists = Lists::Pruned;
-    static constexpr uint8_t dueFrom = NotDue;
+    // For lists with each pair once (HalfListSums).
+    static constexpr Lists lists = Lists::Inner;
+    static constexpr uint8_t activeFrom = Inactive;
     static constexpr bool opposite = false;
     struct Nothing {};
     HD ScalarField field() const { return v.fluid.normalLength; }
-    template <class I> HD Nothing state(I) const { return {}; }
+    template <class I> HD Nothing input(I) const { return {}; }
     HD R of(const Pair<R>& p, Nothing, Nothing) const { return Kernel::w(p.q); }
-    HD void finish(Group i) const { finish(i, load(field(), i)); }
+    HD void finish(ICluster i) const { finish(i, load(field(), i)); }
 };
 
 // a_i += 2 sigma / rho0 kappa n. Twice, because half of the colour's gradient lies in the air,
@@ -95,15 +95,15 @@ struct LeaveOutSpray {
 //     Adami's r.grad W and -d drops swing 1.3 times as fast)
 struct AddSurfaceTension {
     using Kernel = MeanKernel;
-    using Index = Group;
-    using R = Real<Group>;
+    using Index = ICluster;
+    using R = Real<ICluster>;
     View v;
-    HD void operator()(Group i) const {
+    HD void operator()(ICluster i) const {
         const Vector<R> n = load(v.fluid.normal, i);
         R turn = 0, along = 0;
-        forNeighbours<Lists::Pruned>(
+        forNeighbours<Lists::Inner>(
             v, v.fluidNearFluid, i, load(v.fluid.position, i),
-            [&](const auto& p, Four j) LANE_CALL {
+            [&](const auto& p, JCluster j) LANE_CALL {
                 const Vector<R> other = load(v.fluid.normal, j);
                 const R zero = 0,
                         g = select(dot(other, other) > R(real(0.5)), Kernel::g(p.q), zero),

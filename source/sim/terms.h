@@ -24,20 +24,21 @@ enum Needs : unsigned {
 };
 
 // What terms read of one particle.
-template <class R> struct State {
+template <class R> struct PairInput {
     Vector<R> velocity;
-    R pressureTerm, inverseDensity, viscousVolume, pressure, density, rootMassRatio, viscosity;
+    R pressureOverRho2, inverseDensity, viscousVolume, pressure, density, rootMassRatio, viscosity;
 };
 
-template <unsigned needs, class I> HD inline State<Real<I>> loadState(const Particles& p, I i) {
-    State<Real<I>> s;
-    s.pressureTerm = load(p.pressureTerm, i);
+template <unsigned needs, class I>
+HD inline PairInput<Real<I>> loadPairInput(const Particles& p, I i) {
+    PairInput<Real<I>> s;
+    s.pressureOverRho2 = load(p.pressureOverRho2, i);
     if constexpr (needs & Velocity) s.velocity = load(p.velocity, i);
     if constexpr (needs & InverseDensity) s.inverseDensity = load(p.inverseDensity, i);
     if constexpr (needs & ViscousVolume) s.viscousVolume = load(p.viscousVolume, i);
     if constexpr (needs & Pressure) {
         const Real<I> rho = load(p.density, i);
-        s.pressure = s.pressureTerm * rho * rho;
+        s.pressure = s.pressureOverRho2 * rho * rho;
     }
     if constexpr (needs & Density) s.density = massRatio(p, i) * load(p.density, i);
     if constexpr (needs & Mixture)
@@ -48,14 +49,14 @@ template <unsigned needs, class I> HD inline State<Real<I>> loadState(const Part
 // A boundary particle: its mass in units of m, p / rho^2, the velocity that makes fluid stick to
 // the wall or slip along it as it may, and the one at its surface.
 template <class R> struct Wall {
-    R mass, pressureTerm;
+    R mass, pressureOverRho2;
     Vector<R> velocity, own;
 };
 
 template <unsigned needs, class I> HD inline Wall<Real<I>> loadWall(const Particles& p, I i) {
     Wall<Real<I>> w;
     w.mass = load(p.mass, i);
-    w.pressureTerm = load(p.pressureTerm, i);
+    w.pressureOverRho2 = load(p.pressureOverRho2, i);
     if constexpr (needs & WallVelocity) w.velocity = load(p.velocity, i);
     if constexpr (needs & OwnVelocity) w.own = surfaceVelocity(p, i);
     return w;
@@ -95,15 +96,15 @@ struct PressureForce {
     static constexpr unsigned needs = 0;
     static constexpr const char* name = "pressure";
     static const char* skipped(const Scene&) { return ""; }
-    template <class R, class A> HD static void add(const Constants&, const Pair<R>& p,
-                                                   const Weights<R>& k, const State<R>& i,
-                                                   const State<R>& j, A& a) {
-        a.addPressure(k.g * (i.pressureTerm + j.pressureTerm), p.r);
+    template <class R, class A> HD static void add(const StepParameters&, const Pair<R>& p,
+                                                   const Weights<R>& k, const PairInput<R>& i,
+                                                   const PairInput<R>& j, A& a) {
+        a.addPressure(k.g * (i.pressureOverRho2 + j.pressureOverRho2), p.r);
     }
-    template <class R, class A> HD static void addWall(const Constants&, const Pair<R>& p,
-                                                       const Weights<R>& k, const State<R>& i,
+    template <class R, class A> HD static void addWall(const StepParameters&, const Pair<R>& p,
+                                                       const Weights<R>& k, const PairInput<R>& i,
                                                        const Wall<R>& b, A& a) {
-        a.addPressure(b.mass * k.g * (i.pressureTerm + b.pressureTerm), p.r);
+        a.addPressure(b.mass * k.g * (i.pressureOverRho2 + b.pressureOverRho2), p.r);
     }
 };
 
@@ -111,19 +112,19 @@ struct PressureForce {
 struct MeanPressureForce {
     static constexpr unsigned needs = Pressure | InverseDensity;
     static constexpr const char* name = "mean pressure";
-    template <class R, class A> HD static void add(const Constants&, const Pair<R>& p,
-                                                   const Weights<R>& k, const State<R>& i,
-                                                   const State<R>& j, A& a) {
+    template <class R, class A> HD static void add(const StepParameters&, const Pair<R>& p,
+                                                   const Weights<R>& k, const PairInput<R>& i,
+                                                   const PairInput<R>& j, A& a) {
         a.addPressure(
             k.g * R(real(0.5)) * (i.pressure + j.pressure) * (i.inverseDensity * j.inverseDensity),
             p.r);
     }
-    template <class R, class A> HD static void addWall(const Constants& c, const Pair<R>& p,
-                                                       const Weights<R>& k, const State<R>& i,
+    template <class R, class A> HD static void addWall(const StepParameters& c, const Pair<R>& p,
+                                                       const Weights<R>& k, const PairInput<R>& i,
                                                        const Wall<R>& b, A& a) {
         const R rho0 = c.restDensity;
         a.addPressure(b.mass * k.g * R(real(0.5)) *
-                          mulAdd(i.pressure, R(1 / c.restDensity), rho0 * b.pressureTerm) *
+                          mulAdd(i.pressure, R(1 / c.restDensity), rho0 * b.pressureOverRho2) *
                           i.inverseDensity,
                       p.r);
     }
@@ -140,17 +141,17 @@ struct CorrectedPressureForce {
         a.moments = addOuter(a.moments, weight, r);
         a.pressure = addScaled(a.pressure, weight * difference, r);
     }
-    template <class R> HD static void add(const Constants&, const Pair<R>& p, const Weights<R>& k,
-                                          const State<R>& i, const State<R>& j,
-                                          Acceleration<R>& a) {
+    template <class R> HD static void add(const StepParameters&, const Pair<R>& p,
+                                          const Weights<R>& k, const PairInput<R>& i,
+                                          const PairInput<R>& j, Acceleration<R>& a) {
         addDifference(a, k.g * j.inverseDensity, j.pressure - i.pressure, p.r);
     }
-    template <class R> HD static void addWall(const Constants& c, const Pair<R>& p,
-                                              const Weights<R>& k, const State<R>& i,
+    template <class R> HD static void addWall(const StepParameters& c, const Pair<R>& p,
+                                              const Weights<R>& k, const PairInput<R>& i,
                                               const Wall<R>& b, Acceleration<R>& a) {
         const R rho0 = c.restDensity;
         addDifference(a, k.g * b.mass * R(1 / c.restDensity),
-                      b.pressureTerm * rho0 * rho0 - i.pressure, p.r);
+                      b.pressureOverRho2 * rho0 * rho0 - i.pressure, p.r);
     }
 };
 
@@ -171,7 +172,7 @@ HD inline void addViscous(A& a, R weight, const Pair<R>& p, Vector<R> vij) {
 }
 template <ViscosityForm form> inline constexpr unsigned viscousNeeds =
     form == ViscosityForm::Morris ? InverseDensity : ViscousVolume;
-template <ViscosityForm form, class R> HD inline R viscousVolume(const State<R>& s) {
+template <ViscosityForm form, class R> HD inline R viscousVolume(const PairInput<R>& s) {
     return form == ViscosityForm::Morris ? s.inverseDensity : s.viscousVolume;
 }
 
@@ -184,19 +185,19 @@ template <ViscosityForm form> struct LaminarViscosity {
     static const char* skipped(const Scene& s) {
         if (s.simulation.formulation == Formulation::Classic)
             return "the classic formulation has another one";
-        if (isMixture(s)) return "each fluid of the mixture has its own";
+        if (isMultiFluid(s)) return "each fluid of the mixture has its own";
         if (!(s.fluid.viscosity > 0)) return "fluid.viscosity is 0";
         return form == viscosityForm(s) ? "" : whyViscosityForm(s);
     }
-    template <class R, class A> HD static void add(const Constants& c, const Pair<R>& p,
-                                                   const Weights<R>& k, const State<R>& i,
-                                                   const State<R>& j, A& a) {
+    template <class R, class A> HD static void add(const StepParameters& c, const Pair<R>& p,
+                                                   const Weights<R>& k, const PairInput<R>& i,
+                                                   const PairInput<R>& j, A& a) {
         addViscous<form>(a,
                          R(c.laminar) * k.viscous * viscousVolume<form>(i) * viscousVolume<form>(j),
                          p, i.velocity - j.velocity);
     }
-    template <class R, class A> HD static void addWall(const Constants& c, const Pair<R>& p,
-                                                       const Weights<R>& k, const State<R>& i,
+    template <class R, class A> HD static void addWall(const StepParameters& c, const Pair<R>& p,
+                                                       const Weights<R>& k, const PairInput<R>& i,
                                                        const Wall<R>& b, A& a) {
         addViscous<form>(
             a, R(c.laminar) * k.viscous * viscousVolume<form>(i) * viscousVolume<form>(i) * b.mass,
@@ -214,21 +215,21 @@ struct ArtificialViscosity {
             return "the classic formulation has none";
         if (s.simulation.formulation == Formulation::TransportVelocity)
             return "transport_velocity does without";
-        if (isMixture(s)) return "each fluid of the mixture has its own";
+        if (isMultiFluid(s)) return "each fluid of the mixture has its own";
         return s.fluid.artificialViscosity > 0 ? "" : "fluid.artificial_viscosity is 0";
     }
     template <class R>
-    HD static R approach(const Constants& c, const Pair<R>& p, R g, Vector<R> vij) {
+    HD static R approach(const StepParameters& c, const Pair<R>& p, R g, Vector<R> vij) {
         return R(c.artificial) * g * (min(dot(vij, p.r), R(0)) * p.inverseDistance2);
     }
-    template <class R, class A> HD static void add(const Constants& c, const Pair<R>& p,
-                                                   const Weights<R>& k, const State<R>& i,
-                                                   const State<R>& j, A& a) {
+    template <class R, class A> HD static void add(const StepParameters& c, const Pair<R>& p,
+                                                   const Weights<R>& k, const PairInput<R>& i,
+                                                   const PairInput<R>& j, A& a) {
         const R s = approach(c, p, k.g, i.velocity - j.velocity);
         a.addAlong(s * (i.inverseDensity + j.inverseDensity), p.r);
     }
-    template <class R, class A> HD static void addWall(const Constants& c, const Pair<R>& p,
-                                                       const Weights<R>& k, const State<R>& i,
+    template <class R, class A> HD static void addWall(const StepParameters& c, const Pair<R>& p,
+                                                       const Weights<R>& k, const PairInput<R>& i,
                                                        const Wall<R>& b, A& a) {
         const R s = approach(c, p, k.g, i.velocity - b.own);
         a.addAlong(b.mass * s * (i.inverseDensity + i.inverseDensity), p.r);
@@ -245,15 +246,15 @@ template <ViscosityForm form> struct MixtureViscosity {
                                             ? "viscosities of a mixture, Morris"
                                             : "viscosities of a mixture, Monaghan";
     static const char* skipped(const Scene& s) {
-        if (!isMixture(s)) return "there is one fluid";
+        if (!isMultiFluid(s)) return "there is one fluid";
         return form == viscosityForm(s) ? "" : whyViscosityForm(s);
     }
     template <class R> HD static R harmonic(R a, R b) {
         return R(real(2)) * a * b / max(a + b, R(real(1e-20)));
     }
-    template <class R, class A> HD static void add(const Constants& c, const Pair<R>& p,
-                                                   const Weights<R>& k, const State<R>& i,
-                                                   const State<R>& j, A& a) {
+    template <class R, class A> HD static void add(const StepParameters& c, const Pair<R>& p,
+                                                   const Weights<R>& k, const PairInput<R>& i,
+                                                   const PairInput<R>& j, A& a) {
         const Vector<R> vij = i.velocity - j.velocity;
         addViscous<form>(a,
                          R(c.laminar) * harmonic(i.viscosity, j.viscosity) * k.viscous *
@@ -263,8 +264,8 @@ template <ViscosityForm form> struct MixtureViscosity {
                     ArtificialViscosity::approach(c, p, k.g, vij);
         a.addAlong(s * (i.inverseDensity + j.inverseDensity), p.r);
     }
-    template <class R, class A> HD static void addWall(const Constants& c, const Pair<R>& p,
-                                                       const Weights<R>& k, const State<R>& i,
+    template <class R, class A> HD static void addWall(const StepParameters& c, const Pair<R>& p,
+                                                       const Weights<R>& k, const PairInput<R>& i,
                                                        const Wall<R>& b, A& a) {
         addViscous<form>(a,
                          R(c.laminar) * i.viscosity * k.viscous * viscousVolume<form>(i) *
@@ -285,13 +286,13 @@ struct ClassicViscosity {
             return "only the classic formulation has it";
         return s.fluid.viscosity > 0 ? "" : "fluid.viscosity is 0";
     }
-    template <class R, class A> HD static void add(const Constants& c, const Pair<R>& p,
-                                                   const Weights<R>&, const State<R>& i,
-                                                   const State<R>& j, A& a) {
+    template <class R, class A> HD static void add(const StepParameters& c, const Pair<R>& p,
+                                                   const Weights<R>&, const PairInput<R>& i,
+                                                   const PairInput<R>& j, A& a) {
         a.addOther(R(c.classicViscosity) * max(R(1) - p.q, R(0)), j.velocity - i.velocity);
     }
-    template <class R, class A> HD static void addWall(const Constants&, const Pair<R>&,
-                                                       const Weights<R>&, const State<R>&,
+    template <class R, class A> HD static void addWall(const StepParameters&, const Pair<R>&,
+                                                       const Weights<R>&, const PairInput<R>&,
                                                        const Wall<R>&, A&) {}
 };
 
@@ -303,14 +304,14 @@ struct VelocityTransfer {
     static const char* skipped(const Scene& s) {
         return s.fluid.velocityTransfer > 0 ? "" : "fluid.velocity_transfer is 0";
     }
-    template <class R, class A> HD static void add(const Constants& c, const Pair<R>&,
-                                                   const Weights<R>& k, const State<R>& i,
-                                                   const State<R>& j, A& a) {
+    template <class R, class A> HD static void add(const StepParameters& c, const Pair<R>&,
+                                                   const Weights<R>& k, const PairInput<R>& i,
+                                                   const PairInput<R>& j, A& a) {
         a.addOther(R(c.velocityTransfer) * k.w * (i.inverseDensity + j.inverseDensity),
                    j.velocity - i.velocity);
     }
-    template <class R, class A> HD static void addWall(const Constants&, const Pair<R>&,
-                                                       const Weights<R>&, const State<R>&,
+    template <class R, class A> HD static void addWall(const StepParameters&, const Pair<R>&,
+                                                       const Weights<R>&, const PairInput<R>&,
                                                        const Wall<R>&, A&) {}
 };
 
@@ -322,14 +323,14 @@ struct Buoyancy {
     static const char* skipped(const Scene& s) {
         return s.fluid.buoyancy > 0 ? "" : "fluid.buoyancy is 0";
     }
-    template <class R, class A> HD static void add(const Constants& c, const Pair<R>&,
-                                                   const Weights<R>& k, const State<R>& i,
-                                                   const State<R>& j, A& a) {
+    template <class R, class A> HD static void add(const StepParameters& c, const Pair<R>&,
+                                                   const Weights<R>& k, const PairInput<R>& i,
+                                                   const PairInput<R>& j, A& a) {
         const Vector<R> gravity{c.gravity.x, c.gravity.y, c.gravity.z};
         a.addOther(R(c.buoyancy) * k.w * (i.density - j.density), gravity);
     }
-    template <class R, class A> HD static void addWall(const Constants&, const Pair<R>&,
-                                                       const Weights<R>&, const State<R>&,
+    template <class R, class A> HD static void addWall(const StepParameters&, const Pair<R>&,
+                                                       const Weights<R>&, const PairInput<R>&,
                                                        const Wall<R>&, A&) {}
 };
 

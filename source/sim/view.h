@@ -28,8 +28,8 @@ struct Particles {
     ScalarField inverseDensity;  // m^3/kg
     ScalarField viscousVolume;   // m^3/kg, 1/rho as viscosity along lines of pairs counts it: more
                                  // where neighbours are missing, if that is found out
-    ScalarField pressureTerm;    // p / rho^2
-    ScalarField mass;            // boundary particles only (Akinci 2012): m_b / m
+    ScalarField pressureOverRho2;  // p / rho^2
+    ScalarField mass;              // boundary particles only (Akinci 2012): m_b / m
     VectorField outward;  // m, boundary particles only: from the nearest point of their surface,
                           // where fluid sticks to it
     VectorField ownVelocity;    // m/s, boundary particles only: of the wall itself, where any moves
@@ -50,20 +50,20 @@ struct Particles {
                                // from it are those of the same particle of the scene's fluid, which
                                // has its volume and pressure; forces are divided by the ratio
     ScalarField viscosity;     // of a mixture, Pa s
-    ScalarField level;  // local steps only: how short a particle's own step is, longest / 2^level,
-                        // or how it rests
-    uint8_t* due;       // local steps only: per cluster, whether it is evaluated now
+    ScalarField timeBin;       // local steps only: how short a particle's own step is, longest /
+                          // 2^level, or how it rests
+    uint8_t* active;  // local steps only: per cluster, whether it is evaluated now
 };
 
 // The level of who rests.
 inline constexpr real resting = -1;
-// Of clusters. Resting: all of it. Near: not due itself, but maybe a neighbour of who is. Watched:
-// near and resting, so that its density goes with its neighbours' places as a wall's would; with a
-// pressure of its own it would push them without an end.
-enum : uint8_t { Resting, NotDue, NearDue, Watched, Due };
+// Of clusters. Resting: all of it. Near: not due itself, but maybe a neighbour of who is.
+// SleepingHalo: near and resting, so that its density goes with its neighbours' places as a wall's
+// would; with a pressure of its own it would push them without an end.
+enum : uint8_t { Sleeping, Inactive, NearActive, SleepingHalo, Active };
 
-template <uint8_t from = Due, class I> HD inline bool isDue(const Particles& p, I i) {
-    return !p.due || p.due[firstOf(i) / clusterSize] >= from;
+template <uint8_t from = Active, class I> HD inline bool isActive(const Particles& p, I i) {
+    return !p.active || p.active[firstOf(i) / clusterSize] >= from;
 }
 
 // Cells are thin along x and a few particles wide along y and z: a row of cells is one stretch of
@@ -116,11 +116,11 @@ inline constexpr uint16_t allSeen = 0xffff;
 // pair, particle by particle of the cluster, says whether it does.
 struct ClusterList {
     const uint32_t* clusters;
-    uint32_t* pruned;
-    uint32_t count, prunedCount;
-    uint32_t clear, prunedClear;  // how many come first of which all pairs see each other
+    uint32_t* inner;
+    uint32_t count, innerCount;
+    uint32_t clear, innerClear;  // how many come first of which all pairs see each other
     const uint16_t* seen;
-    uint16_t* prunedSeen;
+    uint16_t* innerSeen;
     uint16_t within = allSeen;  // the same of the cluster with itself, where lists hold each pair
                                 // once
 };
@@ -141,12 +141,12 @@ struct Blocks {
     Int3 count, size;  // along each axis, in cells; the last ones are larger
     real* speed2;      // (m/s)^2, mean at the last decision of who rests
     int* calm;         // decisions for which nothing has happened around
-    int* nap;          // and after how many it wakes for a look
-    uint8_t *due,
+    int* sleepLength;  // and after how many it wakes for a look
+    uint8_t *active,
         *near;  // whether it has a particle that is due; what its clusters are that have none
 };
 
-struct Constants {
+struct StepParameters {
     real support, support2, inverseSupport2;  // R, R^2, 1/R^2
     real kernelScale, gradientScale;          // m norm/R^3, m gradientNorm/R^5, m the mass in sums
     real selfWeight;                          // 1: a particle counts itself in its density; 0: not
@@ -237,7 +237,7 @@ struct Screens {
     const SolidState* solids;
     const int* thin;  // which of them
     int count;
-    Constants c;
+    StepParameters c;
     int firstId;  // below, of boundary particles by their ids from that one on:
     const int* solidOf;
     VectorField face;   // m, of a thin solid's particles: from its face to it, in its own axes
@@ -250,7 +250,7 @@ struct View {
     int solidCount;
     Neighbourhood fluidNearFluid, wallsNearFluid, fluidNearWalls, wallsNearWalls;
     Grid grid;
-    Constants c;
+    StepParameters c;
     StepState* state;
     Blocks blocks;
     const Screens* screens;  // null: no solid is thin
@@ -268,7 +268,7 @@ HD inline Vector<real> gravityNow(const View& v) {
 
 // What pulls at every particle, m/s².
 template <class R>
-HD inline Vector<R> bodyForce(const Constants& c, Vector<real> gravityNow, Vector<R> x) {
+HD inline Vector<R> bodyForce(const StepParameters& c, Vector<real> gravityNow, Vector<R> x) {
     const Vector<R> gravity{gravityNow.x, gravityNow.y, gravityNow.z},
         center{c.center.x, c.center.y, c.center.z};
     return subtractScaled(gravity, R(c.centralPull), x - center);
@@ -290,7 +290,7 @@ template <class I> HD inline Vector<Real<I>> surfaceVelocity(const Particles& wa
 }
 
 // Of the domain's walls at one of their particles, m/s.
-template <class R> HD inline Vector<R> wallVelocity(const Constants& c, Vector<R> x) {
+template <class R> HD inline Vector<R> wallVelocity(const StepParameters& c, Vector<R> x) {
     const R zero = 0, one = 1;
     auto slides = [&](R at, real below, real above) LANE_CALL {
         return max(select(at < R(below), one, zero), select(at > R(above), one, zero));

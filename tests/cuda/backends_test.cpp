@@ -191,7 +191,7 @@ TEST(Integrators, StepAsOnTheCpu) {
 // With steps of their own for particles the host asks after each moment whether the step is over.
 // The CPU's lanes evaluate whole clusters, also those of their particles that aren't due; in double
 // precision it is one particle at a time, as here.
-TEST(LocalSteps, AreThoseOfTheCpu) {
+TEST(BlockTimeSteps, AreThoseOfTheCpu) {
     NEED_GPU();
     for (const char* file :
          {"test/dam_break_small.json", "test/solids_small.json", "test/ball_drop_small.json"}) {
@@ -215,7 +215,7 @@ TEST(LocalSteps, AreThoseOfTheCpu) {
     }
 }
 
-TEST(LocalSteps, LetAPoolRest) {
+TEST(BlockTimeSteps, LetAPoolRest) {
     NEED_GPU();
     Scene scene;
     scene.simulation.dimensions = 2, scene.simulation.spacing = 0.02f;

@@ -57,7 +57,7 @@ const char* whyRestIsIdle(const Scene& s, const std::string& path) {
         return "view.range is not fixed";
     if (path == "view.solid_particles" && s.solids.empty()) return "there are no solids";
     if (path == "view.color_map" &&
-        (s.view.colorBy == ColorBy::Plain || (s.view.colorBy == ColorBy::Fluid && isMixture(s))))
+        (s.view.colorBy == ColorBy::Plain || (s.view.colorBy == ColorBy::Fluid && isMultiFluid(s))))
         return "what is shown has colours of its own";
     if (path == "view.camera.target" && s.view.camera.automaticTarget)
         return "view.camera.automatic_target is on";

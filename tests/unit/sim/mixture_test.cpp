@@ -39,7 +39,7 @@ TEST(Mixture, OfTwiceTheSameFluidIsThatFluid) {
             const Scene one = twoFluids(formulation, precision);
             Scene two = one;
             two.fluid.bodies[0].viscosity = 2.0000005f;  // another fluid, but hardly
-            ASSERT_TRUE(isMixture(two) && !isMixture(one));
+            ASSERT_TRUE(isMultiFluid(two) && !isMultiFluid(one));
             const auto a = makeSimulation(one), b = makeSimulation(two);
             a->step(10), b->step(10);
             const auto p = a->particles(), q = b->particles();

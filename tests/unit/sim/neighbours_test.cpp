@@ -336,7 +336,7 @@ TEST(NeighbourLists, KeptListsMissNobody) {
 // A limit on accelerations, however high, makes every particle gather from all its neighbours;
 // without one each pair is computed once. Nine blocks of clusters, so that sums go from block to
 // block, also over the ends of periodic axes.
-TEST(PairSums, EqualSumsOverAllNeighbours) {
+TEST(HalfListSums, EqualSumsOverAllNeighbours) {
     for (const Engine& engine : Engines)
         for (const Space& space : {Box, OtherSpaces[1], OtherSpaces[3]})
             for (Cloud cloud : {Cloud::Random, Cloud::Clustered}) {

@@ -27,7 +27,7 @@ void expectSameParticles(Simulation& a, Simulation& b) {
     }
 }
 
-TEST(LocalSteps, OfCalmFluidAreThoseOfAll) {
+TEST(BlockTimeSteps, OfCalmFluidAreThoseOfAll) {
     for (Formulation f : {Formulation::Wcsph, Formulation::DeltaSph}) {
         Scene scene = testScene("dam_break_small.json");
         scene.simulation.formulation = f;
@@ -56,7 +56,7 @@ Scene collision() {
     return s;
 }
 
-TEST(LocalSteps, AreShorterWhereFluidIsHit) {
+TEST(BlockTimeSteps, AreShorterWhereFluidIsHit) {
     Scene scene = collision();
     auto runFor = [&](TimeMode mode, float cfl) {
         scene.time.mode = mode, scene.time.cfl = cfl;
@@ -86,7 +86,7 @@ TEST(LocalSteps, AreShorterWhereFluidIsHit) {
 // In double precision neighbours are found without lists, and each pair counts twice: whoever is
 // left out where only some are due, differs. (With lists all of a cluster are evaluated when one is
 // due, so that densities are not quite as old.)
-TEST(LocalSteps, MissNoNeighbour) {
+TEST(BlockTimeSteps, MissNoNeighbour) {
     Scene scene = collision();
     scene.time.mode = TimeMode::Local;
     scene.fluid.bodies[0].velocity = {6, 0, 0};
@@ -241,7 +241,7 @@ TEST(Rest, IsNotForbiddenToBeForbidden) {
     EXPECT_GE(evaluationsOf(*simulation, 50), 1);
 }
 
-TEST(LocalSteps, RestartGoesOnWithTheSameBits) {
+TEST(BlockTimeSteps, RestartGoesOnWithTheSameBits) {
     Scene scene = testScene("ball_drop_small.json");
     scene.time.mode = TimeMode::Local;
     auto one = makeSimulation(scene);
@@ -253,7 +253,7 @@ TEST(LocalSteps, RestartGoesOnWithTheSameBits) {
     expectSameParticles(*one, *two);
 }
 
-TEST(LocalSteps, CanBeSwitchedOnAndOff) {
+TEST(BlockTimeSteps, CanBeSwitchedOnAndOff) {
     Scene scene = testScene("dam_break_small.json");
     auto simulation = makeSimulation(scene);
     for (int k = 0; k < 6; ++k) {

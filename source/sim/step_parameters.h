@@ -82,7 +82,7 @@ template <class Kernel> double latticeCorner(const Scene& s) {
 // wall: the mass in sums (returned, kg, in two dimensions kg/m) is scaled for the one, the boundary
 // particles' mass for the other.
 template <class Kernel>
-double calibrateMasses(const Scene& s, const LatticeSums& sums, Constants& c) {
+double calibrateMasses(const Scene& s, const LatticeSums& sums, StepParameters& c) {
     if (s.simulation.formulation == Formulation::Classic) {
         c.selfWeight = 0;
         c.wallFactor = real(1.4);
@@ -105,7 +105,7 @@ double calibrateMasses(const Scene& s, const LatticeSums& sums, Constants& c) {
     return double(s.fluid.restDensity) * particleVolume(s) / bulk;
 }
 
-inline void slideFace(const Scene& s, Vec3 size, Constants& c) {
+inline void slideFace(const Scene& s, Vec3 size, StepParameters& c) {
     Vec3 below{-1e9f, -1e9f, -1e9f}, above{1e9f, 1e9f, 1e9f};
     if (s.walls.movingFace != Face::None) {
         const int face = int(s.walls.movingFace) - 1, axis = face / 2;
@@ -120,7 +120,7 @@ inline void slideFace(const Scene& s, Vec3 size, Constants& c) {
 
 // A slip length of -1 stands for fluid that slides freely: one beside which all others are small.
 inline real slipLength(float length) { return length < 0 ? real(1e9) : real(length); }
-inline void letFacesSlip(const Scene& s, Constants& c) {
+inline void letFacesSlip(const Scene& s, StepParameters& c) {
     auto lengths = [&](Vec3 own) -> Vector<real> {
         const real all = slipLength(s.walls.slip);
         return {std::max(all, slipLength(own.x)), std::max(all, slipLength(own.y)),
@@ -131,7 +131,7 @@ inline void letFacesSlip(const Scene& s, Constants& c) {
 
 // Forces that few scenes have. Their sums are of a particle's mass in sums, multiplied with
 // gradientScale in the end; means are of the smoothest kernel, whichever the scene's is.
-inline void addRareForces(const Scene& s, double mass, Constants& c) {
+inline void addRareForces(const Scene& s, double mass, StepParameters& c) {
     const int d = s.simulation.dimensions;
     const double R = supportRadius(s), rho0 = s.fluid.restDensity, dx = s.simulation.spacing,
                  pi = 3.14159265358979323846;
@@ -176,7 +176,7 @@ inline double longestStep(const Scene& s) {
     for (const Body& body : f.bodies)
         if (viscosity(s, body) > 0)
             step = std::min(step, along * 0.125 * h * h * restDensity(s, body) /
-                                      (viscosity(s, body) * (isMixture(s) ? 2 : 1)));
+                                      (viscosity(s, body) * (isMultiFluid(s) ? 2 : 1)));
     if (f.surfaceTension > 0)
         step = std::min(step, 0.25 * std::sqrt(rho0 * h * h * h / (2 * pi * f.surfaceTension)));
     if (f.velocityTransfer > 0) step = std::min(step, 0.5 / f.velocityTransfer);
@@ -184,10 +184,11 @@ inline double longestStep(const Scene& s) {
 }
 
 // Knobs that may change while running as well as those that don't.
-template <class Kernel> Constants makeConstants(const Scene& s, const FluidExtent& fluid) {
+template <class Kernel>
+StepParameters makeStepParameters(const Scene& s, const FluidExtent& fluid) {
     const double R = supportRadius(s), h = R / 2, rho0 = s.fluid.restDensity;
     const bool linear = s.fluid.equationOfState == EquationOfState::Linear;
-    Constants c{};
+    StepParameters c{};
     c.support = real(R), c.support2 = real(R * R), c.inverseSupport2 = real(1 / (R * R));
     c.restDensity = real(rho0);
     // On its lattice a linear pressure has its exact gradient and a parabolic velocity its exact
@@ -221,7 +222,7 @@ template <class Kernel> Constants makeConstants(const Scene& s, const FluidExten
     c.dimensions = d, c.flatMoment = d == 2 ? 1 : 0;
     const double dx = s.simulation.spacing;
     c.laminar =
-        real(2 * (isMixture(s) ? 1 : double(s.fluid.viscosity)) * sums.gradient /
+        real(2 * (isMultiFluid(s) ? 1 : double(s.fluid.viscosity)) * sums.gradient /
              (viscosityForm(s) == ViscosityForm::Morris ? sums.viscous : sums.shear * dx * dx));
     c.perSurroundings = real(1 / sums.surroundings);
     c.artificial = real(s.fluid.artificialViscosity * sound * h / 2);

@@ -14,16 +14,18 @@
 namespace spindrift::LANES {
 
 // Parts of a step that particles' own steps are whole numbers of: 1/64 is the shortest.
-inline constexpr int deepestLevel = 6, parts = 1 << deepestLevel;
+inline constexpr int deepestTimeBin = 6, parts = 1 << deepestTimeBin;
 // Who rests is decided every few steps, in which nothing crosses a spacing. So many decisions a
 // block's surroundings must have been calm for before it rests, and so many after which it wakes if
 // any neighbour is awake: each time that nothing has come of it twice as many. (Always as many, and
 // a still pool of 18,000 was not at rest after 16 s; so it is after 6.5.)
-inline constexpr int stepsToDecide = 8, calmDecisions = 32, firstNap = 96,
-                     longestNap = 64 * firstNap;
-HD inline bool decides(const StepState& s) { return s.moment == 0 && s.steps % stepsToDecide == 0; }
+inline constexpr int stepsToDecide = 8, calmDecisions = 32, firstSleep = 96,
+                     longestSleep = 64 * firstSleep;
+HD inline bool decides(const StepState& s) {
+    return s.substep == 0 && s.steps % stepsToDecide == 0;
+}
 
-HD inline bool isDue(real level, const StepState& s) { return level >= real(s.level); }
+HD inline bool isActive(real timeBin, const StepState& s) { return timeBin >= real(s.timeBin); }
 
 // f(first, end) for the stretches of slots that block b is, of fluid or walls, by where particles
 // were sorted in.
@@ -71,7 +73,7 @@ struct BeginStep {
     View v;
     HD void operator()(int) const {
         StepState& s = *v.state;
-        if (s.moment == 0)
+        if (s.substep == 0)
             s.longest = untilStop(s, min(real(2) * acousticStep(v.c, real(s.speed)), v.c.maxStep));
     }
 };
@@ -106,19 +108,20 @@ struct RestBlocks {
     View v;
     HD void operator()(int b) const {
         if (!decides(*v.state)) return;
-        int &calm = v.blocks.calm[b], &nap = v.blocks.nap[b];
+        int &calm = v.blocks.calm[b], &sleepLength = v.blocks.sleepLength[b];
         const bool rested = calm >= calmDecisions;
         if (!rested && v.blocks.speed2[b] < 0) return;  // nobody is here
         real speed2 = -1;
         forBlocksAround(v, b, [&](int other) { speed2 = max(speed2, v.blocks.speed2[other]); });
         const real rest = v.c.restSpeed * v.c.soundSpeed, limit = rested ? wake * rest : rest;
-        const bool disturbed = speed2 >= limit * limit, slept = calm >= nap && speed2 >= 0;
-        if (rested && (disturbed || slept)) nap = disturbed ? firstNap : min(2 * nap, longestNap);
-        calm = disturbed || slept ? 0 : min(calm + 1, nap);
+        const bool disturbed = speed2 >= limit * limit, slept = calm >= sleepLength && speed2 >= 0;
+        if (rested && (disturbed || slept))
+            sleepLength = disturbed ? firstSleep : min(2 * sleepLength, longestSleep);
+        calm = disturbed || slept ? 0 : min(calm + 1, sleepLength);
         const bool rests = calm >= calmDecisions;
         forParticles(v, v.fluidNearFluid.cellStart, b, [&](int i) {
             if (v.fluid.id[i] < 0) return;
-            store(v.fluid.level, i, rests ? resting : real(0));
+            store(v.fluid.timeBin, i, rests ? resting : real(0));
             if (!rests) return;
             store(v.fluid.velocity, i, Vector<real>{0, 0, 0});
             if (v.fluid.densityRate.data) store(v.fluid.densityRate, i, real(0));
@@ -130,62 +133,64 @@ struct RestBlocks {
 };
 
 // Clusters with a particle that is due.
-struct FindDueClusters {
+struct FindActiveClusters {
     using Index = int;
     View v;
     HD void operator()(int cluster) const {
         real shortest = resting;
         for (int i = cluster * clusterSize; i < (cluster + 1) * clusterSize; ++i)
-            shortest = max(shortest, load(v.fluid.level, i));
-        v.fluid.due[cluster] = isDue(shortest, *v.state) ? Due : shortest < 0 ? Resting : NotDue;
+            shortest = max(shortest, load(v.fluid.timeBin, i));
+        v.fluid.active[cluster] = isActive(shortest, *v.state) ? Active
+                                  : shortest < 0               ? Sleeping
+                                                               : Inactive;
     }
 };
-struct FindDueBlocks {
+struct FindActiveBlocks {
     using Index = int;
     View v;
     HD void operator()(int b) const {
-        bool due = false;
+        bool active = false;
         forStretches(v, v.fluidNearFluid.cellStart, b, [&](int first, int end) {
             for (int c = first / clusterSize; c * clusterSize < end; ++c)
-                due = due || v.fluid.due[c] == Due;
+                active = active || v.fluid.active[c] == Active;
         });
-        v.blocks.due[b] = due;
+        v.blocks.active[b] = active;
     }
 };
-// Blocks in touch with one that is due, Watched those where somebody rests.
+// Blocks in touch with one that is due, SleepingHalo those where somebody rests.
 struct FindNearBlocks {
     using Index = int;
     View v;
     HD void operator()(int b) const {
         bool near = false, rests = false;
-        forBlocksAround(v, b, [&](int other) { near = near || v.blocks.due[other]; });
+        forBlocksAround(v, b, [&](int other) { near = near || v.blocks.active[other]; });
         if (near)
             forParticles(v, v.fluidNearFluid.cellStart, b, [&](int i) {
-                rests = rests || (load(v.fluid.level, i) < 0 && v.fluid.id[i] >= 0);
+                rests = rests || (load(v.fluid.timeBin, i) < 0 && v.fluid.id[i] >= 0);
             });
-        v.blocks.near[b] = rests ? Watched : near ? NearDue : NotDue;
+        v.blocks.near[b] = rests ? SleepingHalo : near ? NearActive : Inactive;
     }
 };
 // Of these blocks the clusters of fluid and walls; and of those around watched ones, whose pairs
 // with them count as well.
-struct SpreadDue {
+struct SpreadActive {
     using Index = int;
     View v;
     HD void operator()(int b) const {
         const uint8_t near = v.blocks.near[b];
-        bool besideWatched = near != NotDue;
+        bool besideHalo = near != Inactive;
         forBlocksAround(v, b, [&](int other) {
-            besideWatched = besideWatched || v.blocks.near[other] == Watched;
+            besideHalo = besideHalo || v.blocks.near[other] == SleepingHalo;
         });
-        if (!besideWatched) return;
+        if (!besideHalo) return;
         forStretches(v, v.fluidNearFluid.cellStart, b, [&](int first, int end) {
             for (int c = first / clusterSize; c * clusterSize < end; ++c)
-                raise(v.fluid.due[c], near == NotDue ? uint8_t(NearDue) : near);
+                raise(v.fluid.active[c], near == Inactive ? uint8_t(NearActive) : near);
         });
-        if (near == NotDue) return;
+        if (near == Inactive) return;
         forStretches(v, v.wallsNearFluid.cellStart, b, [&](int first, int end) {
             for (int c = first / clusterSize; c * clusterSize < end; ++c)
-                raise(v.walls.due[c], Due);
+                raise(v.walls.active[c], Active);
         });
     }
     // Blocks may share a cluster, which is then the most that any of them says. (One that is a
@@ -201,38 +206,38 @@ struct SpreadDue {
 #endif
     }
 };
-struct ForgetDue {
+struct ClearActive {
     using Index = int;
     Particles p;
-    HD void operator()(int cluster) const { p.due[cluster] = NotDue; }
+    HD void operator()(int cluster) const { p.active[cluster] = Inactive; }
 };
 
 // Where a particle's own step begins: how long it is, and v += a dt. The longest is for calm fluid,
 // dt <= 0.05 sqrt(h/(eps+|a|)) and 0.1 h/(eps+|u|) for cfl = 0.4, in the form of Reinhardt 2017
 // (there 0.02 and 0.05, with which half of a dam break takes half the step and errors are the
 // same); the rest takes what would be good for all if all were like it.
-struct KickDue {
-    using Index = Quad;
-    using R = Real<Quad>;
+struct KickActive {
+    using Index = Lanes4;
+    using R = Real<Lanes4>;
     View v;
-    HD void operator()(Quad i) const {
-        if (!isDue(v.fluid, i)) return;
-        const R before = load(v.fluid.level, i), one = 1, now = real(v.state->level);
+    HD void operator()(Lanes4 i) const {
+        if (!isActive(v.fluid, i)) return;
+        const R before = load(v.fluid.timeBin, i), one = 1, now = real(v.state->timeBin);
         const Vector<R> u = load(v.fluid.velocity, i), a = load(v.fluid.acceleration, i);
         const R pull = squareRoot(dot(a, a)) + R(little), speed = squareRoot(dot(u, u)) + R(little);
         const R h = v.c.support / 2, cfl = v.c.cfl, fall = squareRoot(h / pull);
         const R calm = cfl * min(R(real(0.125)) * fall, R(real(0.25)) * h / speed);
         const R wanted =
             max(calm, min(cfl * h / (R(v.c.soundSpeed) + speed), R(real(0.25)) * fall));
-        R step = real(v.state->longest / (1 << v.state->level)), level = now;
-        for (int k = v.state->level; k < deepestLevel; ++k) {
+        R step = real(v.state->longest / (1 << v.state->timeBin)), timeBin = now;
+        for (int k = v.state->timeBin; k < deepestTimeBin; ++k) {
             const auto tooLong = step > wanted;
             step = select(tooLong, R(real(0.5)) * step, step);
-            level = select(tooLong, level + one, level);
+            timeBin = select(tooLong, timeBin + one, timeBin);
         }
-        const auto isDue = before > now - R(real(0.5));
-        store(v.fluid.level, i, select(isDue, level, before));
-        store(v.fluid.velocity, i, addScaled(u, select(isDue, step, R(0)), a));
+        const auto isActive = before > now - R(real(0.5));
+        store(v.fluid.timeBin, i, select(isActive, timeBin, before));
+        store(v.fluid.velocity, i, addScaled(u, select(isActive, step, R(0)), a));
     }
     static constexpr real little = real(1e-3);  // m/s, m/s²
 };
@@ -241,43 +246,43 @@ struct KickDue {
 struct Motion {
     float speed2 = 0;  // (m/s)^2
     int deepest = 0;
-    double awake = 0, due = 0;
+    double awake = 0, active = 0;
     HD_OUT void add(const Motion& o) {
         speed2 = o.speed2 > speed2 ? o.speed2 : speed2;
         deepest = o.deepest > deepest ? o.deepest : deepest;
-        awake += o.awake, due += o.due;
+        awake += o.awake, active += o.active;
     }
 };
 struct FindMotion {
     Particles p;
     const StepState* state;
     HD void addTo(Motion& m, int i) const {
-        const real level = load(p.level, i);
-        if (level < 0) return;
+        const real timeBin = load(p.timeBin, i);
+        if (timeBin < 0) return;
         const Vector<real> u = load(p.velocity, i);
-        m.add({float(dot(u, u)), int(level), 1, isDue(level, *state) ? 1.0 : 0.0});
+        m.add({float(dot(u, u)), int(timeBin), 1, isActive(timeBin, *state) ? 1.0 : 0.0});
     }
 };
 
 // How long it is until the next particle is due.
-struct ChooseMoment {
+struct ChooseSubstep {
     using Index = int;
     View v;
     const Motion* motion;
     int count;  // of particles
     HD void operator()(int) const {
         StepState& s = *v.state;
-        const int part = parts >> motion->deepest, next = (s.moment / part + 1) * part;
-        s.dt = s.longest * (next - s.moment) / parts;
+        const int part = parts >> motion->deepest, next = (s.substep / part + 1) * part;
+        s.dt = s.longest * (next - s.substep) / parts;
         advanceTime(s, s.dt);
-        s.moment = next % parts;
-        s.level = 0;
-        while (s.moment % (parts >> s.level) != 0) ++s.level;
-        if (s.moment == 0) ++s.steps;
+        s.substep = next % parts;
+        s.timeBin = 0;
+        while (s.substep % (parts >> s.timeBin) != 0) ++s.timeBin;
+        if (s.substep == 0) ++s.steps;
         s.speed = squareRoot(real(motion->speed2));
-        s.evaluations += motion->due;
+        s.evaluations += motion->active;
         s.awake = motion->awake / count;
-        s.allDue = s.level == 0 && motion->awake == count && !decides(s);
+        s.allActive = s.timeBin == 0 && motion->awake == count && !decides(s);
         s.allRest = motion->awake == 0 && !decides(s);
     }
 };
@@ -286,17 +291,17 @@ struct ChooseMoment {
 struct WakeParticles {
     using Index = int;
     Particles p;
-    HD void operator()(int i) const { store(p.level, i, p.id[i] < 0 ? resting : real(0)); }
+    HD void operator()(int i) const { store(p.timeBin, i, p.id[i] < 0 ? resting : real(0)); }
 };
 struct WakeBlocks {
     using Index = int;
     Blocks blocks;
-    HD void operator()(int b) const { blocks.calm[b] = 0, blocks.nap[b] = firstNap; }
+    HD void operator()(int b) const { blocks.calm[b] = 0, blocks.sleepLength[b] = firstSleep; }
 };
 
-template <class Device> class LocalSteps {
+template <class Device> class BlockTimeSteps {
 public:
-    explicit LocalSteps(Device& device) : device_(device) {}
+    explicit BlockTimeSteps(Device& device) : device_(device) {}
     // Blocks are whole cells and no smaller than `reach` (m), no less than that of neighbours:
     // these lie in blocks that touch.
     void resize(const Grid& grid, real reach) {
@@ -306,8 +311,8 @@ public:
         size_ = {along(grid.cells.x, grid.perMetre.x), along(grid.cells.y, grid.perMetre.y),
                  along(grid.cells.z, grid.perMetre.z)};
         count_ = {grid.cells.x / size_.x, grid.cells.y / size_.y, grid.cells.z / size_.z};
-        speed2_.resize(blocks()), calm_.resize(blocks()), nap_.resize(blocks()),
-            due_.resize(blocks()), near_.resize(blocks());
+        speed2_.resize(blocks()), calm_.resize(blocks()), sleepLength_.resize(blocks()),
+            active_.resize(blocks()), near_.resize(blocks());
         motion_.resize(1);
         wake();
     }
@@ -316,16 +321,16 @@ public:
     size_t blocks() const { return size_t(count_.x) * size_t(count_.y) * size_t(count_.z); }
     Motion* motion() { return motion_.data(); }
     Blocks view() const {
-        return {count_,      size_,       speed2_.data(), calm_.data(),
-                nap_.data(), due_.data(), near_.data()};
+        return {count_,         size_,       speed2_.data(), calm_.data(), sleepLength_.data(),
+                active_.data(), near_.data()};
     }
 
 private:
     Device& device_;
     Int3 count_{0, 0, 0}, size_{1, 1, 1};
     Buffer<real, Device> speed2_{device_};
-    Buffer<int, Device> calm_{device_}, nap_{device_};
-    Buffer<uint8_t, Device> due_{device_}, near_{device_};
+    Buffer<int, Device> calm_{device_}, sleepLength_{device_};
+    Buffer<uint8_t, Device> active_{device_}, near_{device_};
     Buffer<Motion, Device> motion_{device_};
 };
 

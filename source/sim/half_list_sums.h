@@ -18,7 +18,7 @@ template <class Field> inline constexpr int stride = 1;
 template <> inline constexpr int components<VectorField> = 3;
 template <> inline constexpr int stride<VectorField> = vectorStride;
 
-class PairSums {
+class HalfListSums {
 public:
     int64_t bytes() const {
         size_t numbers = 0;
@@ -26,7 +26,7 @@ public:
         return int64_t(numbers * sizeof(float));
     }
 
-    // Adds up pass.of(pair, pass.state(i), pass.state(j)), what a pair gives to i, and
+    // Adds up pass.of(pair, pass.input(i), pass.input(j)), what a pair gives to i, and
     // Pass::opposite says whether j gets that or its opposite; pass.finish(i) goes on from the sum,
     // which is then in pass.field().
     template <class Pass> void run(Omp& device, const ClusterLists& lists, const Pass& pass) {
@@ -46,23 +46,23 @@ public:
                         0);           // readable one cluster past its end
             const Pass local = pass;  // else each store to the sums might have changed a constant,
                                       // for all the compiler knows
-            for (int i = begin * clusterSize; i < end * clusterSize; i += Group::size)
+            for (int i = begin * clusterSize; i < end * clusterSize; i += ICluster::size)
                 if (isNear(local.v.fluid, i / clusterSize))
-                    sumOnce(local, Group{i}, sums.data(), begin);
+                    sumOnce(local, ICluster{i}, sums.data(), begin);
         });
         device.forTasks(count, [&](int b) {
             const int begin = b * block, end = std::min(clusters, begin + block);
-            auto isDueOne = [&](int c) {
-                return isDue<Pass::dueFrom>(pass.v.fluid, c * clusterSize);
+            auto isActiveOne = [&](int c) {
+                return isActive<Pass::activeFrom>(pass.v.fluid, c * clusterSize);
             };
             for (int first = begin, last; first < end;
                  first = last) {  // stretches of clusters that are due, or aren't
                 last = first + 1;
-                while (last < end && isDueOne(last) == isDueOne(first)) ++last;
-                if (isDueOne(first)) addUp<numbers>(b, block, first, last, pass.field().data);
+                while (last < end && isActiveOne(last) == isActiveOne(first)) ++last;
+                if (isActiveOne(first)) addUp<numbers>(b, block, first, last, pass.field().data);
             }
-            for (int i = begin * clusterSize; i < end * clusterSize; i += Group::size)
-                if (isDue<Pass::dueFrom>(pass.v.fluid, Group{i})) pass.finish(Group{i});
+            for (int i = begin * clusterSize; i < end * clusterSize; i += ICluster::size)
+                if (isActive<Pass::activeFrom>(pass.v.fluid, ICluster{i})) pass.finish(ICluster{i});
         });
     }
 
@@ -71,7 +71,7 @@ private:
 
     // Clusters that are due or may have a neighbour that is.
     static bool isNear(const Particles& p, int cluster) {
-        return !p.due || p.due[cluster] > NotDue;
+        return !p.active || p.active[cluster] > Inactive;
     }
 
     // What blocks [0, b] have for clusters [first, last) of block b.
@@ -89,32 +89,32 @@ private:
     }
 
     template <class Pass>
-    HD static void sumOnce(const Pass& pass, Group i, float* sums, int firstCluster) {
+    HD static void sumOnce(const Pass& pass, ICluster i, float* sums, int firstCluster) {
         const View& v = pass.v;
         using Field = decltype(pass.field());
         constexpr int n = components<Field>, numbers = clusterSize * stride<Field>;
         const Vector<Wide> x = load(v.fluid.position, i);
-        const auto own = pass.state(i);
-        const Four same{i.first / clusterSize * clusterSize};
+        const auto own = pass.input(i);
+        const JCluster same{i.first / clusterSize * clusterSize};
         const uint16_t seen = v.fluidNearFluid.lists[i.first / clusterSize].within;
         const Wide apart = seen == allSeen ? Wide(0) : apartUnless(seen, i);
         auto sum = pass.of(makePair(v.c, x, load(v.fluid.position, same), apart), own,
-                           pass.state(same));  // each gives itself to all four
-        forNeighbours<Pass::lists, Pass::dueFrom>(
+                           pass.input(same));  // each gives itself to all four
+        forNeighbours<Pass::lists, Pass::activeFrom>(
             v, v.fluidNearFluid, i, x,
-            [&](const auto& p, Four j) LANE_CALL {
-                const auto given = pass.of(p, own, pass.state(j));
+            [&](const auto& p, JCluster j) LANE_CALL {
+                const auto given = pass.of(p, own, pass.input(j));
                 sum = sum + given;
                 float* other = sums + size_t(j.first / clusterSize - firstCluster) * numbers;
                 for (int k = 0; k < n; ++k)
                     addToOthers<Pass::opposite>(other + k * clusterSize, component(given, k));
             },
-            isDue<Pass::dueFrom>(v.fluid, i) ? nullptr : v.fluid.due);
+            isActive<Pass::activeFrom>(v.fluid, i) ? nullptr : v.fluid.active);
         const auto whole = total(sum);
         float* at =
             sums + size_t(i.first / clusterSize - firstCluster) * numbers + i.first % clusterSize;
         for (int k = 0; k < n; ++k, at += clusterSize)
-            storeAt(at, Group{0}, loadAt(at, Group{0}) + component(whole, k));
+            storeAt(at, ICluster{0}, loadAt(at, ICluster{0}) + component(whole, k));
     }
 
     std::vector<std::vector<float>> blocks_;

@@ -1,4 +1,4 @@
-#include "scene/check_things.h"
+#include "scene/check_bodies.h"
 
 #include "scene/convex.h"
 #include "scene/motion.h"
