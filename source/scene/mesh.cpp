@@ -143,6 +143,21 @@ bool Mesh::holds(Vec3d p) const {
     return (std::lower_bound(changes.begin(), changes.end(), p.x) - changes.begin()) % 2 == 1;
 }
 
+// Whether one of two triangles with an edge in common lies on the other.
+bool Mesh::liesOn(int i, int j) const {
+    const Triangle &a = triangles_[size_t(i)], &b = triangles_[size_t(j)];
+    const auto isIn = [](const Triangle& t, int v) { return t[0] == v || t[1] == v || t[2] == v; };
+    const auto thirdOf = [&](const Triangle& t, const Triangle& other) {
+        return vertices_[size_t(!isIn(other, t[0]) ? t[0] : !isIn(other, t[1]) ? t[1] : t[2])];
+    };
+    const int from = isIn(b, a[0]) ? a[0] : a[1], to = isIn(b, a[2]) ? a[2] : a[1];
+    const Vec3d edge = vertices_[size_t(to)] - vertices_[size_t(from)], p = thirdOf(a, b),
+                q = thirdOf(b, a);
+    return std::abs(facetOf(i).height(q)) <= precision_ &&
+           dot(cross(edge, p - vertices_[size_t(from)]), cross(edge, q - vertices_[size_t(from)])) >
+               0;
+}
+
 // Of the triangles those parts with the solid on one side only, and that side behind them.
 void Mesh::findSurface() {
     const int count = int(triangles_.size());
@@ -167,7 +182,7 @@ void Mesh::findSurface() {
                 for (const int v : triangles_[size_t(i)])
                     for (const int w : triangles_[size_t(j)]) shared += v == w;
                 const bool sameShell = shells_[size_t(i)] == shells_[size_t(j)];
-                if (i == j || (sameShell && shared == 2)) return;
+                if (i == j || (sameShell && shared == 2 && !liesOn(i, j))) return;
                 const Meeting meeting = meet(t, facetOf(j), tolerance, cuts[size_t(i)]);
                 if (meeting == Meeting::Cover && j < i) covers[size_t(i)].push_back(j);
                 if (meeting == Meeting::None || sameShell) return;

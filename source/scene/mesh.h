@@ -80,6 +80,7 @@ private:
     std::vector<double> changesAlong(double y, double z) const;
     bool holds(Vec3d p) const;
     void findBox();
+    bool liesOn(int i, int j) const;
     void findSurface();
     void addSurface(const Facet&, const std::vector<Vec3d>& polygon, const std::vector<int>& covers,
                     std::vector<Facet>& out) const;

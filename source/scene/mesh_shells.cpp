@@ -1,16 +1,18 @@
 #include "scene/mesh_shells.h"
 
 #include "core/error.h"
-#include "scene/facet.h"
+#include "scene/box_tree.h"
+#include "scene/mesh_cells.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <tuple>
 #include <unordered_map>
-#include <unordered_set>
 
 namespace spindrift {
 namespace {
@@ -99,12 +101,12 @@ public:
 
     ShellNet find(double roundOff) {
         weld(roundOff);
-        dropDoubled();
+        countDoubled();
         findEdges();
+        do findPatches();
+        while (dropNeedless());
         requireClosed();
-        findPatches();
-        joinPatches();
-        return shells();
+        return shells(findCells());
     }
 
 private:
@@ -185,9 +187,8 @@ private:
         return true;
     }
 
-    // Triangles that are there several times are there once, or as often as the solids beside them
-    // need them: see timesOf.
-    void dropDoubled() {
+    // Triangles that are there several times.
+    void countDoubled() {
         std::vector<std::pair<Triangle, size_t>> sorted;
         for (size_t t = 0; t < triangles_.size(); ++t) {
             Triangle key = triangles_[t];
@@ -195,62 +196,12 @@ private:
             sorted.push_back({key, t});
         }
         std::sort(sorted.begin(), sorted.end());
-        std::vector<Triangle> once, all;
-        std::vector<size_t> times;
+        std::vector<Triangle> once;
         for (size_t i = 0, end; i < sorted.size(); i = end) {
             for (end = i; end < sorted.size() && sorted[end].first == sorted[i].first;) ++end;
-            once.push_back(triangles_[sorted[i].second]), times.push_back(end - i);
+            once.push_back(triangles_[sorted[i].second]), times_.push_back(int(end - i));
         }
-        if (once.size() == triangles_.size()) return;
         triangles_ = std::move(once);
-        findEdges();
-        std::vector<char> known(triangles_.size());
-        for (size_t t = 0; t < triangles_.size(); ++t) {
-            if (known[t] || times[t] == 1) continue;
-            const std::vector<int> patch = alike(int(t), times);
-            const size_t wanted = timesOf(patch, times);
-            for (const int p : patch) known[size_t(p)] = true, times[size_t(p)] = wanted;
-        }
-        for (size_t t = 0; t < triangles_.size(); ++t)
-            all.insert(all.end(), times[t], triangles_[t]);
-        triangles_ = std::move(all);
-        if (triangles_.empty()) refuse("encloses no volume; thicken it");
-    }
-    // Those that hang together with this one and are there as often.
-    std::vector<int> alike(int first, const std::vector<size_t>& times) const {
-        std::vector<int> reached{first};
-        std::unordered_set<int> known{first};
-        for (size_t i = 0; i < reached.size(); ++i)
-            forEdges(reached[i], [&](const Use* uses, size_t count) {
-                for (size_t u = 0; u < count && count == 2; ++u)
-                    if (const int next = uses[u].triangle;
-                        times[size_t(next)] == times[size_t(first)] && known.insert(next).second)
-                        reached.push_back(next);
-            });
-        return reached;
-    }
-    // Where they end at an edge of as many others, each of these belongs to a solid above or below.
-    // What is above and what is below share a wall, which goes; more on one side lie in each other.
-    // Others in the same plane take theirs by going on straight. Elsewhere once is enough.
-    size_t timesOf(const std::vector<int>& patch, const std::vector<size_t>& times) const {
-        const size_t count = times[size_t(patch[0])];
-        size_t wanted = 1;
-        for (const int p : patch) {
-            const Triangle& t = triangles_[size_t(p)];
-            const Facet facet(vertices_[size_t(t[0])], vertices_[size_t(t[1])],
-                              vertices_[size_t(t[2])]);
-            forEdges(p, [&](const Use* uses, size_t n) {
-                int above = 0, below = 0, others = 0;
-                for (const Use* use = uses; use < uses + n; ++use) {
-                    if (times[size_t(use->triangle)] > 1) continue;
-                    const double height = facet.height(vertices_[size_t(thirdOf(*use))]);
-                    ++others, above += height > precision_, below += height < -precision_;
-                }
-                if (size_t(others) == count)
-                    wanted = above + below == others ? size_t(std::abs(above - below)) : count;
-            });
-        }
-        return wanted;
     }
     int thirdOf(const Use& use) const {
         const Triangle& t = triangles_[size_t(use.triangle)];
@@ -279,6 +230,17 @@ private:
     size_t countOf(size_t edge) const {
         return (edge + 1 < edges_.size() ? edges_[edge + 1] : uses_.size()) - edges_[edge];
     }
+    int timesOf(const Use& use) const { return times_[size_t(use.triangle)]; }
+    // Of all uses of an edge, the doubled ones too.
+    int sumOf(const Use* uses, size_t count) const {
+        int sum = 0;
+        for (const Use* use = uses; use < uses + count; ++use) sum += timesOf(*use);
+        return sum;
+    }
+    // Whether two triangles go on in each other there.
+    bool isSmooth(const Use* uses, size_t count) const {
+        return count == 2 && timesOf(uses[0]) == timesOf(uses[1]);
+    }
     // Calls f(uses, count) for each edge of a triangle.
     template <class F> void forEdges(int triangle, const F& f) const {
         for (const int e : edgeOf_[size_t(triangle)])
@@ -288,130 +250,142 @@ private:
     void requireClosed() const {
         size_t wrong = 0;
         const Use* first = nullptr;
-        size_t count = 0;
-        for (size_t e = 0; e < edges_.size(); ++e)
-            if (countOf(e) % 2 == 1 && wrong++ == 0) first = &uses_[edges_[e]], count = countOf(e);
+        int sum = 0;
+        for (size_t e = 0; e < edges_.size(); ++e) {
+            const Use* uses = &uses_[edges_[e]];
+            const int here = countOf(e) == 1 ? 1 : sumOf(uses, countOf(e));
+            if (here % 2 == 1 && wrong++ == 0) first = uses, sum = here;
+        }
         if (wrong == 0) return;
         refuse(fmt::format(
             "is not closed: {} belongs to {}, each must to two ({} such edge{}); close the surface "
             "where it was made",
-            edge(*first), count == 1 ? "one triangle" : fmt::format("{} triangles", count), wrong,
+            edge(*first), sum == 1 ? "one triangle" : fmt::format("{} triangles", sum), wrong,
             wrong == 1 ? "" : "s"));
     }
 
-    // Triangles that hang together by edges of two triangles, turned to face the same side.
+    // Triangles that hang together by edges of two, turned to face the same side.
     void findPatches() {
         patch_.assign(triangles_.size(), -1), turned_.assign(triangles_.size(), 0);
+        patches_ = 0, oneSided_.reset();
         for (size_t t = 0; t < triangles_.size(); ++t) {
             if (patch_[t] >= 0) continue;
             std::vector<int> reached{int(t)};
             patch_[t] = patches_;
             for (size_t i = 0; i < reached.size(); ++i)
                 forEdges(reached[i], [&](const Use* uses, size_t count) {
-                    if (count != 2) return;
+                    if (!isSmooth(uses, count)) return;
                     const bool opposed = uses[0].upward == uses[1].upward;
                     const size_t next = size_t(uses[uses[0].triangle == reached[i]].triangle);
                     const char turned = char(turned_[size_t(reached[i])] ^ char(opposed));
-                    if (patch_[next] >= 0 && turned_[next] != turned) refuseToOrient(*uses);
+                    if (patch_[next] >= 0 && turned_[next] != turned) oneSided_ = *uses;
                     if (patch_[next] >= 0) return;
                     patch_[next] = patches_, turned_[next] = turned, reached.push_back(int(next));
                 });
             ++patches_;
         }
     }
+    // One that is once too often there to be closed with what is beside it was written once too
+    // often.
+    bool dropNeedless() {
+        std::vector<char> closes(size_t(patches_), 0), tooMany(size_t(patches_), 0);
+        for (size_t t = 0; t < triangles_.size(); ++t)
+            forEdges(int(t), [&](const Use* uses, size_t count) {
+                if (isSmooth(uses, count)) return;
+                (sumOf(uses, count) % 2 == 1 ? tooMany : closes)[size_t(patch_[t])] = true;
+            });
+        bool dropped = false;
+        for (size_t t = 0; t < triangles_.size(); ++t)
+            if (const size_t p = size_t(patch_[t]); times_[t] > 1 && tooMany[p] && !closes[p])
+                --times_[t], dropped = true;
+        return dropped;
+    }
 
-    // The patch that stands for the shell of this one, and whether this one faces the other way.
-    std::pair<int, char> shellOf(int patch) const {
-        char turned = 0;
-        for (; parent_[size_t(patch)] != patch; patch = parent_[size_t(patch)])
-            turned = char(turned ^ turnedToParent_[size_t(patch)]);
-        return {patch, turned};
+    std::vector<Patch> patches(Vec3d from) const {
+        std::vector<Patch> found{size_t(patches_)};
+        for (size_t t = 0; t < triangles_.size(); ++t) {
+            Patch& p = found[size_t(patch_[t])];
+            p.times = times_[t];
+            const auto arm = [&](size_t k) { return vertices_[size_t(triangles_[t][k])] - from; };
+            p.volume += (turned_[t] ? -1 : 1) * dot(arm(0), cross(arm(1), arm(2))) / 6;
+        }
+        return found;
     }
     bool isUpward(const Use& use) const {
-        const size_t t = size_t(use.triangle);
-        return use.upward != bool(turned_[t] ^ shellOf(patch_[t]).second);
+        return use.upward != bool(turned_[size_t(use.triangle)]);
     }
-
-    // Where more than two triangles share an edge, and not each patch has two of them, those go on
-    // in each other that do so most nearly straight.
-    void joinPatches() {
-        parent_.resize(size_t(patches_)), turnedToParent_.assign(size_t(patches_), 0);
-        std::iota(parent_.begin(), parent_.end(), 0);
-        for (size_t e = 0; e < edges_.size(); ++e) {
-            std::vector<Use> open(uses_.begin() + long(edges_[e]),
-                                  uses_.begin() + long(edges_[e] + countOf(e)));
-            if (open.size() == 2) continue;
-            std::map<int, int> ofPatch;
-            for (const Use& use : open) ++ofPatch[shellOf(patch_[size_t(use.triangle)]).first];
-            if (std::all_of(ofPatch.begin(), ofPatch.end(),
-                            [](const auto& p) { return p.second % 2 == 0; }))
-                continue;
-            while (!open.empty()) joinStraightest(open);
+    // What ends at an edge and goes on in others there. Nothing, where each patch goes on in
+    // itself.
+    std::vector<Sheet> sheetsAt(const Use* uses, size_t count) const {
+        std::map<int, int> sums;
+        for (const Use* use = uses; use < uses + count; ++use)
+            sums[patch_[size_t(use->triangle)]] += isUpward(*use) ? 1 : -1;
+        if (std::all_of(sums.begin(), sums.end(), [](const auto& s) { return s.second == 0; }))
+            return {};
+        const Vec3d along =
+                        normalized(vertices_[size_t(uses->high)] - vertices_[size_t(uses->low)]),
+                    first = away(*uses, along).way, second = cross(along, first);
+        std::vector<Sheet> sheets;
+        for (const Use* use = uses; use < uses + count; ++use) {
+            const Away to = away(*use, along);
+            sheets.push_back({patch_[size_t(use->triangle)], isUpward(*use),
+                              std::atan2(dot(to.way, second), dot(to.way, first)),
+                              4 * precision_ / std::max(to.far, precision_)});
         }
+        return sheets;
+    }
+    MeshCells findCells() const {
+        if (oneSided_) refuseToOrient(*oneSided_);
+        MeshCells cells(patches(vertices_[size_t(triangles_[0][0])]));
         for (size_t e = 0; e < edges_.size(); ++e) {
-            std::map<int, int> sums;
-            for (size_t i = edges_[e]; i < edges_[e] + countOf(e); ++i)
-                sums[shellOf(patch_[size_t(uses_[i].triangle)]).first] +=
-                    isUpward(uses_[i]) ? 1 : -1;
-            for (const auto& [shell, sum] : sums)
-                if (sum != 0) refuseToOrient(uses_[edges_[e]]);
+            const Use* uses = &uses_[edges_[e]];
+            if (isSmooth(uses, countOf(e))) continue;
+            if (auto sheets = sheetsAt(uses, countOf(e)); !sheets.empty())
+                cells.meet(std::move(sheets));
         }
+        if (!cells.solve())
+            refuse("it can't be said where its inside is; make it of closed surfaces");
+        return cells;
     }
-    void joinStraightest(std::vector<Use>& open) {
-        size_t a = 0, b = 1;
-        double least = 1e300;
-        for (size_t i = 0; i < open.size(); ++i)
-            for (size_t j = i + 1; j < open.size(); ++j)
-                if (const double c = dot(away(open[i]), away(open[j])); c < least)
-                    least = c, a = i, b = j;
-        const auto [one, oneTurned] = shellOf(patch_[size_t(open[a].triangle)]);
-        const auto [other, otherTurned] = shellOf(patch_[size_t(open[b].triangle)]);
-        const bool opposed = isUpward(open[a]) == isUpward(open[b]);
-        if (one == other && opposed) refuseToOrient(open[a]);
-        if (one != other) parent_[size_t(other)] = one, turnedToParent_[size_t(other)] = opposed;
-        open.erase(open.begin() + long(b)), open.erase(open.begin() + long(a));
-    }
-    // From its edge into a triangle.
-    Vec3d away(const Use& use) const {
-        const Vec3d along = normalized(vertices_[size_t(use.high)] - vertices_[size_t(use.low)]);
+    // From its edge into a triangle, and how far that goes.
+    struct Away {
+        Vec3d way;
+        double far;
+    };
+    Away away(const Use& use, Vec3d along) const {
         const Vec3d d = vertices_[size_t(thirdOf(use))] - vertices_[size_t(use.low)],
                     across = d - dot(d, along) * along;
         const double far = length(across);
-        return far > 0 ? (1 / far) * across : across;
+        return {far > 0 ? (1 / far) * across : across, far};
     }
 
-    ShellNet shells() const {
-        ShellNet net{vertices_, triangles_, std::vector<int>(triangles_.size()), 0, precision_};
-        std::vector<double> volumes(size_t(patches_), 0.0), areas = volumes;
-        std::vector<int> firsts(size_t(patches_), -1);
+    // Each triangle as often as more solids are behind it than before it.
+    ShellNet shells(const MeshCells& cells) const {
+        ShellNet net{vertices_, {}, {}, 0, precision_};
+        std::map<int, int> common, numbers;  // of groups of patches
+        std::map<int, std::pair<double, double>> sizes;
+        const Vec3d from = vertices_[size_t(triangles_[0][0])];
         for (size_t t = 0; t < triangles_.size(); ++t) {
-            const auto [shell, patchTurned] = shellOf(patch_[t]);
-            Triangle& n = net.triangles[t];
-            if (turned_[t] ^ patchTurned) std::swap(n[1], n[2]);
-            int& first = firsts[size_t(shell)];
-            if (first < 0) first = n[0];
-            const auto from = [&](int v) {
-                return vertices_[size_t(v)] - vertices_[size_t(first)];
-            };
-            volumes[size_t(shell)] += dot(from(n[0]), cross(from(n[1]), from(n[2]))) / 6;
-            areas[size_t(shell)] +=
-                0.5 * length(cross(from(n[1]) - from(n[0]), from(n[2]) - from(n[0])));
-            net.shells[t] = shell;
+            const int group = cells.groupOf(patch_[t]), jump = cells.jump(patch_[t]);
+            common[group] = std::gcd(common[group], jump);
+            const auto arm = [&](size_t k) { return vertices_[size_t(triangles_[t][k])] - from; };
+            auto& [volume, area] = sizes[group];
+            volume += (turned_[t] ? -jump : jump) * dot(arm(0), cross(arm(1), arm(2))) / 6;
+            area += std::abs(jump) * length(cross(arm(1) - arm(0), arm(2) - arm(0))) / 2;
         }
-        std::vector<int> numbers(size_t(patches_), -1);
-        for (size_t s = 0; s < volumes.size(); ++s)
-            if (std::abs(volumes[s]) > LeastVolume * std::pow(areas[s], 1.5))
-                numbers[s] = net.shellCount++;
-        size_t end = 0;
         for (size_t t = 0; t < triangles_.size(); ++t) {
-            const size_t shell = size_t(net.shells[t]);
-            if (numbers[shell] < 0) continue;
-            Triangle n = net.triangles[t];
-            if (volumes[shell] < 0) std::swap(n[1], n[2]);
-            net.triangles[end] = n, net.shells[end++] = numbers[shell];
+            const int group = cells.groupOf(patch_[t]), jump = cells.jump(patch_[t]);
+            const auto [volume, area] = sizes[group];
+            if (volume <= LeastVolume * std::pow(area, 1.5) || jump == 0) continue;
+            const auto [number, isNew] = numbers.try_emplace(group, net.shellCount);
+            net.shellCount += isNew;
+            Triangle n = triangles_[t];
+            if (bool(turned_[t]) != (jump < 0)) std::swap(n[1], n[2]);
+            const size_t copies = size_t(std::abs(jump) / common[group]);
+            net.triangles.insert(net.triangles.end(), copies, n);
+            net.shells.insert(net.shells.end(), copies, number->second);
         }
-        net.triangles.resize(end), net.shells.resize(end);
-        if (end == 0) refuse("encloses no volume; thicken it");
+        if (net.triangles.empty()) refuse("encloses no volume; thicken it");
         return net;
     }
 
@@ -422,9 +396,11 @@ private:
     std::vector<Use> uses_;                   // of one edge after the other
     std::vector<size_t> edges_;               // where the uses of each begin
     std::vector<std::array<int, 3>> edgeOf_;  // of each triangle
+    std::vector<int> times_;                  // that each triangle is there
     int patches_ = 0;
-    std::vector<int> patch_, parent_;
-    std::vector<char> turned_, turnedToParent_;
+    std::vector<int> patch_;
+    std::vector<char> turned_;
+    std::optional<Use> oneSided_;  // where a patch meets itself the other way round
 };
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <set>
 #include <tuple>
 
 namespace spindrift {
@@ -165,7 +166,7 @@ TEST(MeshSolids, ShellsTouchCrossAndNest) {
     for (int trial = 0; trial < 300; ++trial) {
         SCOPED_TRACE(trial);
         const bool asStl = trial % 4 == 1;  // without a word on which corners belong together
-        const Blocks blocks(random, 1 + int(random() % (asStl ? 2 : 6)));
+        const Blocks blocks(random, 1 + int(random() % (asStl ? 4 : 6)));
         if (blocks.volume() == 0) continue;
         Surface surface = blocks.surface().inTriangles(trial % 2);
         windAtRandom(surface, random);
@@ -188,6 +189,44 @@ TEST(MeshSolids, ShellsTouchCrossAndNest) {
             const double exact = blocks.distance(p);
             ASSERT_NEAR(mesh.nearest(placed(p)).distance, exact, precision)
                 << p.x << " " << p.y << " " << p.z;
+        }
+    }
+}
+
+// Cubes of a lattice that fill some of it, each with its own six faces: they share faces, edges and
+// corners, and enclose hollows. Written as STL does, with nothing that says which corners belong
+// together; as that and with corners of their own they are the same.
+TEST(MeshSolids, ThatShareFacesAreOneSolid) {
+    std::mt19937 random(5);
+    for (int trial = 0; trial < 300; ++trial) {
+        SCOPED_TRACE(trial);
+        const int side = 2 + trial % 3;
+        const unsigned full = 1 + random() % 9;  // of ten
+        std::set<std::array<int, 3>> filled;
+        for (int i = 0; i < side * side * side; ++i)
+            if (random() % 10 < full) filled.insert({i % side, i / side % side, i / side / side});
+        if (filled.empty()) continue;
+        const auto axes = randomAxes(random);
+        Surface cubes;
+        for (const auto& [x, y, z] : filled)
+            cubes.add(boxSurface({double(x), double(y), double(z)}, {x + 1.0, y + 1.0, z + 1.0}));
+        for (Vec3d& p : cubes.vertices)
+            if (trial % 2) p = p.x * axes[0] + p.y * axes[1] + p.z * axes[2];
+        Surface soup = rounded(cubes.inTriangles(trial % 3 == 0));
+        std::shuffle(soup.faces.begin(), soup.faces.end(), random);
+        if (trial % 4) windAtRandom(soup, random);
+        const Mesh welded = meshOf(soup, 1e-6), own = meshOf(cubes);
+        ASSERT_NEAR(welded.weigh().volume, double(filled.size()), 1e-4);
+        ASSERT_NEAR(own.weigh().volume, double(filled.size()), 1e-4);
+        for (int k = 0; k < 200; ++k) {
+            Vec3d p;
+            for (int c = 0; c < 3; ++c) p[c] = (random() / 4294967296.0) * (side + 1.0) - 0.5;
+            const bool inside =
+                filled.contains({int(std::floor(p.x)), int(std::floor(p.y)), int(std::floor(p.z))});
+            if (trial % 2) p = p.x * axes[0] + p.y * axes[1] + p.z * axes[2];
+            const double far = welded.nearest(p).distance;
+            ASSERT_EQ(far < 0, inside);
+            ASSERT_NEAR(far, own.nearest(p).distance, 1e-5);
         }
     }
 }
