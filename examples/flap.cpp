@@ -18,19 +18,15 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 
 // A tank a metre long with a sheet that stands on its floor, from wall to wall.
-constexpr const char* TankWithFlap = R({
-    "version" : 2,
-    "name" : "tank with a flap",
-    "simulation" : {"spacing" : 0.025},
-    "domain" : {"min" : [ 0, 0, 0 ], "max" : [ 1, 0.5, 0.2 ]},
-    "objects" : [ {
-        "shape" : "sheet",
-        "min" : [ 0.3, 0.025, 0.0125 ],
-        "max" : [ 0.3, 0.425, 0.1875 ],
-        "thickness" : 0.01
-    } ],
-    "fluid" : {"bodies" : [ {"shape" : "block", "min" : [ 0, 0, 0 ], "max" : [ 1, 0.3, 0.2 ]} ]}
-});
+constexpr const char* TankWithFlap = R"({
+    "version": 2,
+    "name": "tank with a flap",
+    "simulation": { "spacing": 0.025 },
+    "domain": { "min": [0, 0, 0], "max": [1, 0.5, 0.2] },
+    "objects": [{ "shape": "sheet", "min": [0.3, 0.025, 0.0125], "max": [0.3, 0.425, 0.1875],
+                   "thickness": 0.01 }],
+    "fluid": { "bodies": [{ "shape": "block", "min": [0, 0, 0], "max": [1, 0.3, 0.2] }] }
+})";
 
 // Turns every particle about the hinge at the flap's foot, by an angle that the engine alone
 // decides.

@@ -60,7 +60,7 @@ Case withWalls(int64_t particles, double warmUp, int batches) {
 // would take minutes.
 std::vector<Case> gpuCases(int64_t most) {
     std::vector<Case> cases = {{"historical 3", "3", {"compute.backend=cuda"}, 120, 0.2, 1000, 1}};
-    for (auto [particles, warmUp, steps] : {std::tuple{50000, 0.2, 1000},
+    for (auto [particles, warmUp, steps] : {std::tuple{50'000, 0.2, 1000},
                                             {1'000'000, 0.2, 1000},
                                             {10'000'000, 0.01, 1000},
                                             {100'000'000, 0.0, 20}})

@@ -8,7 +8,7 @@ struct BenchOptions {
     std::string only, json, simd, baseline;
     int threads = 0;  // 0 = all cores
     bool gpu = false;
-    int64_t most = 1'000'000000;  // particles
+    int64_t most = 1'000'000'000;  // particles
 };
 
 // Times whole steps of shipped scenes: the historical files against the original program's figures,

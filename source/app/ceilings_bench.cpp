@@ -106,7 +106,7 @@ void printPasses(int particles, double gflops, double gigabytes) {
     const auto simulation = makeSimulation(scene);
     while (simulation->clock().time < 0.1) simulation->step(5);
     simulation->resetTimes();
-    simulation->step(particles > 100000 ? 20 : 100);
+    simulation->step(particles > 100'000 ? 20 : 100);
     const std::vector<PassTime> times = simulation->times();
     const double within = pairsWithin(simulation->particles(), supportRadius(scene));
     const PairsSeen seen = simulation->pairsSeen();

@@ -7,7 +7,7 @@ namespace spindrift::hdf5 {
 namespace {
 
 // More rows than any run has: a damaged size must not ask for memory.
-constexpr hsize_t MostRows = 1'000'000000;
+constexpr hsize_t MostRows = 1'000'000'000;
 
 // HDF5 writes its errors to standard error by default, and tidies up when the program ends, where
 // it was seen to crash after reading a damaged file; all that is open here is closed here.

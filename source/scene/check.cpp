@@ -43,7 +43,7 @@ constexpr double BytesPerObjectParticle = 1200, GpuBytesPerObjectParticle = 320;
 constexpr double HostBytesPerGpuParticle = 100;
 constexpr double GpuBytesAnyway = 64 << 20;
 // Particle ids are 32-bit; walls and fluid together stay clear of the limit.
-constexpr int64_t MostParticles = 1'000'000000;
+constexpr int64_t MostParticles = 1'000'000'000;
 constexpr double SmallestSupport = 1.5;
 
 std::string bodyPath(size_t index) { return fmt::format("fluid.bodies[{}]", index); }

@@ -77,7 +77,7 @@ double median(std::vector<double> values) {
 
 // A regular share of the places, enough for a median.
 template <class F> void forSample(const std::vector<Vec3d>& places, const F& f) {
-    constexpr size_t Most = 10000;
+    constexpr size_t Most = 10'000;
     for (size_t i = 0; i < places.size(); i += places.size() / Most + 1) f(i);
 }
 

@@ -18,12 +18,12 @@ protected:
     // A piston goes into a full, closed tank.
     OutsideValidity() {
         std::ofstream(folder_ / "piston.json")
-            << R"({"version": 2, "simulation": {"spacing": 0.02, "dimensions: 2},
+            << R"({"version": 2, "simulation": {"spacing": 0.02, "dimensions": 2},
             "domain": {"min": [0, 0, 0], "max": [0.5, 0.2, 0.2]},
             "solids": [{"shape": "block", "min": [0, 0, 0], "max": [0.1, 0.2, 0.2],
                         "keyframes": [[0.05, 0, 0, 0], [0.25, 0.1, 0, 0]]}],
             "fluid": {"bodies": [{"shape": "block", "min": [0.1, 0, 0], "max": [0.5, 0.2, 0.2]}]},
-            "output": {"sample_every": 0.01}});
+            "output": {"sample_every": 0.01}})";
     }
     const std::string Run = "piston.json --headless --backend cpu --threads 1 ";
     const std::string What = "mean compression: ";
@@ -69,15 +69,15 @@ TEST_F(OutsideValidity, IsAnErrorWhenStrict) {
 
 TEST_F(OutsideValidity, OfASceneIsAnErrorBeforeItRuns) {
     const std::string thin = R"( --set 'solids=[{"name":"p","shape":"block",)"
-               R"("min":[0.3,0.1,0],"max":[0.305,0.105,0.2]}]' )";
-        const Outcome strict = call(Run + thin + "--strict --time 0.01 --csv c.csv");
-        EXPECT_EQ(strict.code, int(Exit::Invalid));
-        EXPECT_NE(strict.text.find("solids[0] (p), thickness: 0.005 m are 0.25 spacings"),
-                  std::string::npos)
-            << strict.text;
-        EXPECT_FALSE(fs::exists(folder_ / "c.csv"));
-        EXPECT_EQ(call(Run + thin + "--quiet --time 0.01").code, 0);
-    }
+                             R"("min":[0.3,0.1,0],"max":[0.305,0.105,0.2]}]' )";
+    const Outcome strict = call(Run + thin + "--strict --time 0.01 --csv c.csv");
+    EXPECT_EQ(strict.code, int(Exit::Invalid));
+    EXPECT_NE(strict.text.find("solids[0] (p), thickness: 0.005 m are 0.25 spacings"),
+              std::string::npos)
+        << strict.text;
+    EXPECT_FALSE(fs::exists(folder_ / "c.csv"));
+    EXPECT_EQ(call(Run + thin + "--quiet --time 0.01").code, 0);
+}
 
 }  // namespace
 }  // namespace spindrift

@@ -106,7 +106,7 @@ int main(int count, char** arguments) {
         return int(spindrift::Exit::NoDevice);
     }
     bool same = true;
-    std::vector<int> sizes = {50'000, 1'000'000, 10'000000};
+    std::vector<int> sizes = {50'000, 1'000'000, 10'000'000};
     if (count > 1) sizes.clear();
     for (int k = 1; k < count; ++k) sizes.push_back(std::atoi(arguments[k]));
     for (int n : sizes) same &= spindrift::compare(n);

@@ -90,7 +90,7 @@ std::string meshSlope(double degrees) {
                          {0.6 + 2 * half, 0, 0.2},
                          {x, 0.8, 0.2}},
                         {{0, 2, 1}, {3, 4, 5}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}}};
-    return R"({"shape":"mesh","path":")" + wedge.write(testing::TempDir() + "/calm_slope.obj) +
+    return R"({"shape":"mesh","path":")" + wedge.write(testing::TempDir() + "/calm_slope.obj") +
            "\"}";
 }
 

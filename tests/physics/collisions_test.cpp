@@ -39,7 +39,7 @@ void expectAll(const std::string& what, Scene scene, int steps, const Side& side
     }
 }
 std::string mesh(const Surface& surface, const std::string& name, const std::string& more = "") {
-    return R"({"shape":"mesh","path":")" + surface.write(testing::TempDir() + "/" + name + ".obj) +
+    return R"({"shape":"mesh","path":")" + surface.write(testing::TempDir() + "/" + name + ".obj") +
            "\"" + more + "}";
 }
 // A wall all round a room, both of them boxes.

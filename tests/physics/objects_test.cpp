@@ -215,9 +215,9 @@ TEST(Objects, WhatTearsOpenKeepsFluidOut) {
          R"(fluid.bodies=[{"shape":"block","min":[0.2,0.5,0],"max":[0.8,0.7,0.1]}])",
          R"(objects=[{"shape":"block","min":[0.2,0,0],"max":[0.8,0.48,0.1],"youngs_modulus":1e6}])",
          R"(cuts=[{"time":0,"min":[0.49,0,0],"max":[0.51,1,1]}])",
-         R"(grips=[{"min":[0.1,0,0],"max":[0.28,0.6,0.1],"keyframes:[[0,0,0,0],[0.3,-0.15,0,0]]},
+         R"(grips=[{"min":[0.1,0,0],"max":[0.28,0.6,0.1],"keyframes":[[0,0,0,0],[0.3,-0.15,0,0]]},
                                      {"min":[0.72,0,0],"max":[0.9,0.6,0.1],
-                                       "keyframes":[[0,0,0,0],[0.3,0.15,0,0]]}])});
+                                       "keyframes":[[0,0,0,0],[0.3,0.15,0,0]]}])"});
     auto simulation = makeSimulation(scene);
     runUntil(*simulation, 0.6);
     double nearest = 1;
@@ -239,9 +239,9 @@ TEST(Objects, FloatingSolidsPushAndArePushed) {
     Scene scene =
         sceneOf({"simulation.gravity=0,0,0", "fluid.sound_speed=10",
                  R"(objects=[{"shape":"block","min":[0.6,0.4,0.4],"max":[0.8,0.7,0.6],)"
-         R"("youngs_modulus":1e5}])",
-         R"(solids=[{"shape":"sphere","center":[0.42,0.5,0.5],"radius":0.1,"density":2000,)"
-         R"("velocity":[1,0,0]}])"});
+                 R"("youngs_modulus":1e5}])",
+                 R"(solids=[{"shape":"sphere","center":[0.42,0.5,0.5],"radius":0.1,"density":2000,)"
+                 R"("velocity":[1,0,0]}])"});
     auto simulation = makeSimulation(scene);
     const double mass = massOf(scene, scene.solids[0]).mass;
     const ObjectSample sample = sampleObjects(scene);

@@ -35,9 +35,9 @@ Scene twoLevels(double thickness, const std::string& formulation, const std::str
          fmt::format(R"(solids=[{{"shape":"block","min":[0.2,0,0],"max":[{},0.5,0.2]{}}}])", right,
                      motion),
          fmt::format(
-             R"(fluid.bodies=[{{"shape":"block","min":[0,0,0],"max:[0.2,0.4,0.2],
+             R"(fluid.bodies=[{{"shape":"block","min":[0,0,0],"max":[0.2,0.4,0.2],
              "pressure":"hydrostatic"}},
-             {{"shape":"block","min":[{},0,0],"max":[{},0.2,0.2],"pressure":"hydrostatic"}}]),
+             {{"shape":"block","min":[{},0,0],"max":[{},0.2,0.2],"pressure":"hydrostatic"}}])",
              right, right + 0.2)},
         formulation);
 }
@@ -115,14 +115,14 @@ TEST(ThinSolids, CupsHoldWater) {
             const double t = spacings * Dx, low = 0.2, high = 0.4, floor = 0.12;
             const Scene scene = sceneOf(
                 {"domain.max=0.6,0.5,0.2", "simulation.gravity_ramp=0.4",
-                 fmt::format(R"(solids=[{{"shape":"block","min":[{0},{2},0],"max:[0.2,0.44,0.2]}},
+                 fmt::format(R"(solids=[{{"shape":"block","min":[{0},{2},0],"max":[0.2,0.44,0.2]}},
                      {{"shape":"block","min":[0.4,{2},0],"max":[{1},0.44,0.2]}},
-                     {{"shape":"block","min":[0.2,{2},0],"max":[0.4,0.12,0.2]}}]),
+                     {{"shape":"block","min":[0.2,{2},0],"max":[0.4,0.12,0.2]}}])",
                              low - t, high + t, floor - t),
-                 R"(fluid.bodies=[{"shape":"block","min":[0.2,0.12,0],"max:[0.4,0.36,0.2]},
+                 R"(fluid.bodies=[{"shape":"block","min":[0.2,0.12,0],"max":[0.4,0.36,0.2]},
                      {"shape":"block","min":[0,0,0],"max":[0.2,0.18,0.2]},
                      {"shape":"block","min":[0.4,0,0],"max":[0.6,0.18,0.2]},
-                     {"shape":"block","min":[0.2,0,0],"max":[0.4,0.12,0.2]}])},
+                     {"shape":"block","min":[0.2,0,0],"max":[0.4,0.12,0.2]}])"},
                 formulation);
             auto simulation = makeSimulation(scene);
             auto held = [&] {

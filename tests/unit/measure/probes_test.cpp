@@ -53,10 +53,10 @@ double reading(const Scene& scene, const std::string& column) {
 
 TEST(Probes, ColumnsHaveNamesAndUnits) {
     const Scene scene = poolScene(3,
-                                  R"([{"name":"a","position:[1.5,2.2,3.2]},
+                                  R"([{"name":"a","position":[1.5,2.2,3.2]},
              {"kind":"line","name":"b","from":[1,2,3],"to":[2,2,3],"count":2},
              {"kind":"height","name":"c","position":[1.5,0,3.2]},
-             {"kind":"front","name":"d","axis":"x"}]));
+             {"kind":"front","name":"d","axis":"x"}])");
     std::string all;
     const Probes probes(scene);
     for (const Column& c : probes.columns()) all += c.name + "|" + c.unit + " ";
@@ -74,12 +74,12 @@ TEST(Probes, ColumnsHaveNamesAndUnits) {
 TEST(Probes, LinearFieldsExactlyAlsoAtTheFloorAndOverASensor) {
     for (int dimensions : {2, 3}) {
         const Scene scene =
-            poolScene(dimensions, R"([{"name":"floor","position":[1.5,2,3.2],"order":"linear},
+            poolScene(dimensions, R"([{"name":"floor","position":[1.5,2,3.2],"order":"linear"},
             {"name":"disc","position":[2,2.2,3.2],"radius":0.05,"order":"linear"},
             {"name":"ball","position":[1.5,2.2,3.2],"radius":0.05,"order":"linear"},
             {"name":"corner","position":[2,2.01,3.2],"radius":0.03,"order":"linear"},
             {"kind":"line","name":"line","from":[1.1,2.1,3.2],"to":[1.9,2.3,3.2],"count":3,
-              "order":"linear"}]));
+              "order":"linear"}])");
         EXPECT_NEAR(reading(scene, "floor.pressure"), pressureAt({1.5, 2, 0}), 1e-2);
         EXPECT_NEAR(reading(scene, "floor.density"), 1002, 1e-4);
         EXPECT_NEAR(reading(scene, "floor.velocity_x"), 2, 1e-5);
@@ -114,8 +114,8 @@ TEST(Probes, ThinSolidsAreNotSeenThrough) {
     scene.simulation.spacing = 0.02f;
     scene.domain.max = {0.4f, 0.4f, 0.2f};
     setKnob(scene, R"(solids=[{"shape":"block","min":[0.1,0,0],"max":[0.104,0.4,0.2]}])");
-    setKnob(scene, R"(output.probes=[{"name":"left","position:[0.19,0.2,0]},
-                                     {"name":"right","position":[0.215,0.2,0]}]));
+    setKnob(scene, R"(output.probes=[{"name":"left","position":[0.19,0.2,0]},
+                                     {"name":"right","position":[0.215,0.2,0]}])");
     std::vector<Particle> particles;
     for (int i = 0; i < 400; ++i) {
         Particle p;

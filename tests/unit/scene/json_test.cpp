@@ -42,9 +42,9 @@ TEST(ReadScene, KeepsDefaultsAndIgnoresComments) {
 }
 
 TEST(ReadScene, ReadsBodiesByShape) {
-    const Scene scene = parseScene(R"({"version": 2, "fluid": {"bodies: [
+    const Scene scene = parseScene(R"({"version": 2, "fluid": {"bodies": [
         {"min": [0.1, 0, 0]},
-         {"shape": "cylinder", "axis": "z", "radius": 0.2, "velocity": [1, 2, 3]}]}}),
+         {"shape": "cylinder", "axis": "z", "radius": 0.2, "velocity": [1, 2, 3]}]}})",
                                    "a.json");
     ASSERT_EQ(scene.fluid.bodies.size(), 2u);
     EXPECT_EQ(scene.fluid.bodies[0].min.x, 0.1f);
@@ -182,22 +182,14 @@ TEST(Historical, BecomesTheClassicFormulation) {
 }
 
 TEST(Historical, ReadsEveryKey) {
-    const Scene scene = parseScene(
-        R({
-            "window" : {"title" : "t", "width" : 640, "height" : 480, "point_size" : 5},
-            "compute" :
-                {"cli" : true, "gpu" : false, "gpu_threads" : 256, "omp_threads" : 3, "steps" : 77},
-            "simulation" : {
-                "delta" : 0.001,
-                "space_size" : 2,
-                "smooth_radius" : 0.05,
-                "fluid_grid" : [ 4, 5, 6 ],
-                "box_boundary" : true
-            },
-            "fluid" :
-                {"gravity" : -1, "mass" : 1e-4, "density" : 2, "viscosity" : 0.1, "stiffness" : 20}
-        }),
-        "old.json");
+    const Scene scene = parseScene(R"({
+        "window": {"title": "t", "width": 640, "height": 480, "point_size": 5},
+        "compute": {"cli": true, "gpu": false, "gpu_threads": 256, "omp_threads": 3, "steps": 77},
+        "simulation": {"delta": 0.001, "space_size": 2, "smooth_radius": 0.05,
+         "fluid_grid": [4, 5, 6],
+                       "box_boundary": true},
+        "fluid": {"gravity": -1, "mass": 1e-4, "density": 2, "viscosity": 0.1, "stiffness": 20}})",
+                                   "old.json");
     EXPECT_EQ(scene.window.title, "t");
     EXPECT_EQ(scene.window.pointSize, 5);
     EXPECT_TRUE(scene.output.headless);

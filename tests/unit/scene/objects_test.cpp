@@ -113,8 +113,9 @@ TEST(ObjectSampling, ShellsAreNetsOfTriangles) {
     std::ofstream(path)
         << "v 1 0 0\nv -1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1\n"
            "f 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\nf 4 2 6\nf 1 4 6\n";
-    const Scene scene = sceneOf(R"([{"shape":"shell","path":") + path +
-                R"(","scale":0.2,"offset":[0.5,0.75,0.5],"thickness":0.01,"density":500,)
+    const Scene scene =
+        sceneOf(R"([{"shape":"shell","path":")" + path +
+                R"(","scale":0.2,"offset":[0.5,0.75,0.5],"thickness":0.01,"density":500,)"
                 R"("youngs_modulus":1e5}])");
     const ObjectSample s = sampleObjects(scene);
     EXPECT_EQ(s.size(), 66u);  // edges of 0.28 m, cut twice: 8 x 16 triangles

@@ -37,8 +37,8 @@ TEST(Screens, HideTheSameFromListsAndRows) {
     const std::pair<std::string, int> scenes[] = {
         {R"([{"shape":"block","min":[0.3,0,0],"max":[0.31,0.6,0.6]}])", 2},
         {R"([{"shape":"block","min":[0.3,0,0],"max":[0.34,0.6,0.6]}])", 3},
-        {R"([{"shape":"block","min":[0.3,0.1,0.2],"max":[0.4,0.5,0.6],"spin:90},
-             {"shape":"block","min":[0.5,0.1,0.1],"max":[0.505,0.3,0.5],"velocity":[0.5,0,0]}]),
+        {R"([{"shape":"block","min":[0.3,0.1,0.2],"max":[0.4,0.5,0.6],"spin":90},
+             {"shape":"block","min":[0.5,0.1,0.1],"max":[0.505,0.3,0.5],"velocity":[0.5,0,0]}])",
          3},
         {R"([{"shape":"cylinder","axis":"x","center":[0.4,0.2,0.3],"radius":0.2,"height":0.02}])",
          3},
