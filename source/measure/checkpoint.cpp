@@ -119,6 +119,11 @@ void writeAll(hid_t file, const Scene& scene, const RunState& s,
         std::vector<double> left;
         for (const SolidMotion& m : s.solids) left.push_back(m.left);
         writeNumbers(file, "keyframes left", left);
+        std::vector<double> accelerations;
+        for (const SolidMotion& m : s.solids)
+            for (const Vec3d& a : {m.acceleration, m.spinRate})
+                accelerations.insert(accelerations.end(), {a.x, a.y, a.z});
+        writeNumbers(file, "solid accelerations", accelerations);
     }
     if (!s.objects.positions.empty()) {
         writeVectors(file, "object positions", "m", s.objects.positions);
@@ -183,6 +188,12 @@ Checkpoint readAll(hid_t file, const std::string& path) {
     if (H5Aexists(file, "keyframes left") > 0) {  // none in older files
         const std::vector<double> left = readNumbers(file, "keyframes left", solids);
         for (size_t k = 0; k < c.state.solids.size(); ++k) c.state.solids[k].left = left[k];
+    }
+    if (H5Aexists(file, "solid accelerations") > 0) {  // nor these
+        const std::vector<double> a = readNumbers(file, "solid accelerations", 6 * solids);
+        for (size_t k = 0; k < c.state.solids.size(); ++k)
+            c.state.solids[k].acceleration = {a[6 * k], a[6 * k + 1], a[6 * k + 2]},
+            c.state.solids[k].spinRate = {a[6 * k + 3], a[6 * k + 4], a[6 * k + 5]};
     }
     const auto floats = [](const Solid& s) { return s.floats(); };
     if (c.state.solids.empty() && std::any_of(c.scene.solids.begin(), c.scene.solids.end(), floats))

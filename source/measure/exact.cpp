@@ -120,6 +120,35 @@ std::complex<double> viscousDrop(int n, double R, double Omega, double nu) {
         });
 }
 
+BodyInBox bodyInBox(double own, double volume, Vec3d box, int dimensions) {
+    const double pi = std::numbers::pi;
+    double field = 0;  // of all images of a dipole, along it
+    for (int m = -6; m <= 6; ++m) {
+        const double X = m * box.x, sign = m % 2 ? -1 : 1;
+        if (dimensions == 2) {
+            const double s = std::sinh(pi * X / box.y);
+            field += pi * pi / (box.y * box.y) * (m == 0 ? 1.0 / 3 : -sign / (s * s));
+            continue;
+        }
+        constexpr int far = 100;
+        const double end = far * std::min(box.y, box.z);  // beyond, as if spread out in the plane
+        for (int n = -far; n <= far; ++n)
+            for (int l = -far; l <= far; ++l) {
+                const double across2 = std::pow(n * box.y, 2) + std::pow(l * box.z, 2),
+                             r2 = X * X + across2;
+                if (r2 > 0 && across2 <= end * end)
+                    field += sign * (r2 - 3 * X * X) / std::pow(r2, 2.5);
+            }
+        field += sign * 2 * pi * end * end / (std::pow(end * end + X * X, 1.5) * box.y * box.z);
+    }
+    const double dipole = (own + volume) / (2 * pi * (dimensions - 1)), e = dipole * field;
+    return {(own + volume * e) / (1 - e), 1 / (1 - e)};
+}
+
+double bassetIntegral(double A, double onset, double t) {
+    return 4.0 / 3 * A / onset * (std::pow(t, 1.5) - std::pow(std::max(t - onset, 0.0), 1.5));
+}
+
 void SettlingSphere::advance(double dt) {
     const double ratio = density / fluidDensity, perSpeed = fluidDensity * diameter / viscosity;
     auto drag = [&](double u) { return u * (1 + 0.15 * std::pow(perSpeed * u, 0.687)); };

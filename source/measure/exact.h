@@ -48,6 +48,20 @@ struct SettlingSphere {
     void advance(double dt);      // s
 };
 
+// A body in the middle of a closed box that is full of fluid at rest, once it accelerates along x.
+// The box's walls are mirrors, in which far images are dipoles (Lamb 1932, paragraph 71). `own` is
+// its added mass over the fluid's density in fluid without an end, `volume` its volume: m^2 in two
+// dimensions, else m^3. Added masses without a box, by Newman 1977, table 4.3: of a circular
+// cylinder pi a^2, of a square with sides 2a 4.754 a^2, of a sphere 2/3 pi a^3.
+struct BodyInBox {
+    double addedMass, faster;  // as `own`; how many times as fast fluid slides past it
+};
+BodyInBox bodyInBox(double own, double volume, Vec3d box, int dimensions);
+// s^(3/2) m/s² of a body whose acceleration grows to A (m/s²) in `onset` seconds and stays there:
+// the integral of a(s) / sqrt(t - s) that drag by the layers of Stokes 1851 goes with (Basset
+// 1888).
+double bassetIntegral(double A, double onset, double t);
+
 // What sums over a kernel's neighbours make of a wave sin(kx) along x on a lattice: k and k^2 as
 // they see them, times dx and dx^2. R / dx is the support.
 struct LatticeWave {

@@ -301,21 +301,6 @@ void runFront(const Scene& scene, ValidationRun& run, const std::string& data) {
 
 namespace {
 
-// Mean over `window` about each time, by trapezoids between samples.
-std::vector<double> runningMean(const std::vector<double>& t, const std::vector<double>& p,
-                                double window) {
-    std::vector<double> out;
-    for (double at : t) {
-        double sum = 0;
-        int count = 0;
-        for (size_t k = size_t(std::lower_bound(t.begin(), t.end(), at - window / 2) - t.begin());
-             k < t.size() && t[k] <= at + window / 2; ++k)
-            sum += p[k], ++count;
-        out.push_back(sum / count);
-    }
-    return out;
-}
-
 double integral(const std::vector<double>& t, const std::vector<double>& p, double from,
                 double to) {
     double sum = 0;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <vector>
 
 namespace spindrift {
 
@@ -50,6 +51,21 @@ private:
 // `target`, where the resolution is high enough to be judged by it.
 inline std::optional<double> targetAt(int resolution, int from, double target) {
     return resolution >= from ? std::optional(target) : std::nullopt;
+}
+
+// Mean of samples within `window` about each time.
+inline std::vector<double> runningMean(const std::vector<double>& t, const std::vector<double>& p,
+                                       double window) {
+    std::vector<double> out;
+    for (double at : t) {
+        double sum = 0;
+        int count = 0;
+        for (size_t k = size_t(std::lower_bound(t.begin(), t.end(), at - window / 2) - t.begin());
+             k < t.size() && t[k] <= at + window / 2; ++k)
+            sum += p[k], ++count;
+        out.push_back(sum / count);
+    }
+    return out;
 }
 
 }  // namespace spindrift

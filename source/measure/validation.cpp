@@ -1,5 +1,6 @@
 #include "measure/validation.h"
 
+#include "measure/accelerated_bodies.h"
 #include "measure/enclosed_flows.h"
 #include "measure/free_surface_flows.h"
 #include "measure/operators.h"
@@ -32,6 +33,12 @@ std::vector<ValidationCase> validationCases(const std::string& data) {
     // The better kernel for the same time at Re = 100, not at 1000 (docs/ACCURACY.md).
     auto smooth = [](Scene& s, int n) {
         spacing(s, n), s.simulation.kernel = Kernel::WendlandC4, s.simulation.support = 3.2f;
+    };
+    auto perRadius = [](Scene& s, int n) { s.simulation.spacing = 0.1f / float(n); };
+    auto accelerated = [](double coefficient, double target, int from) {
+        return [=](const Scene& s, ValidationRun& r) {
+            runAcceleratedBody(s, r, coefficient, target, from);
+        };
     };
     auto tank = [](Scene& s, int n) {  // 0.9 m deep, about 2 m wide in whole spacings
         const float dx = 0.9f / float(n);
@@ -205,6 +212,51 @@ std::vector<ValidationCase> validationCases(const std::string& data) {
          {10, 20},
          spacing,
          runFilm},
+        {"added_mass",
+         "Cylinder that accelerates in a box",
+         "added_mass",
+         "Lamb 1932, images",
+         "a / dx",
+         {5, 10, 20},
+         {5},
+         perRadius,
+         accelerated(1, 5, 5)},
+        {"added_mass_square",
+         "Square that accelerates in a box",
+         "added_mass_square",
+         "Newman 1977, 4.754 a^2, images",
+         "a / dx",
+         {5, 10, 20},
+         {5},
+         perRadius,
+         accelerated(4.754 / 4, 5, 5)},
+        {"added_mass_sphere",
+         "Sphere that accelerates in a box, three dimensions",
+         "added_mass_sphere",
+         "Lamb 1932, images",
+         "a / dx",
+         {4, 5, 6},
+         {},
+         perRadius,
+         accelerated(0.5, 5, 5)},
+        {"stokes_layer",
+         "Early drag of a cylinder that accelerates",
+         "stokes_layer",
+         "Stokes 1851, Basset 1888, images",
+         "a / dx",
+         {5, 10, 20},
+         {},
+         perRadius,
+         accelerated(1, 10, 20)},
+        {"heave",
+         "Cylinder afloat that heaves",
+         "heave",
+         "Ursell 1949, Maskell and Ursell 1970",
+         "a / dx",
+         {5, 10, 20},
+         {},
+         perRadius,
+         [data](const Scene& s, ValidationRun& r) { runHeave(s, r, data); }},
         {"settling",
          "Sphere that settles, Re 31.9",
          "settling",

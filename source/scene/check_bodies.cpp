@@ -15,7 +15,8 @@ namespace {
 void checkKeyframeList(const Keyframes& keyframes, const std::string& path) {
     for (size_t k = 0; k < keyframes.size(); ++k) {
         const Keyframe& key = keyframes[k];
-        if (!std::isfinite(key.time + key.turn + key.offset.x + key.offset.y + key.offset.z))
+        const Vec3d sum = key.offset + key.velocity;
+        if (!std::isfinite(key.time + key.turn + key.spin + sum.x + sum.y + sum.z))
             refuse(path + ".keyframes",
                    fmt::format("the one at t = {} s has a value that is no number; mend it",
                                key.time));
@@ -23,6 +24,9 @@ void checkKeyframeList(const Keyframes& keyframes, const std::string& path) {
             refuse(path + ".keyframes",
                    fmt::format("t = {} s does not come after {} s; put them in the order of time",
                                key.time, keyframes[k - 1].time));
+        if (key.hasRates != keyframes[0].hasRates)
+            refuse(path + ".keyframes",
+                   "some say how fast the solid is and some do not; let all of them, or none");
     }
 }
 

@@ -28,7 +28,7 @@ Json listOf(const Knob& k, int least, int most) {
 Json typeOf(Vec3, const Knob& k) { return listOf(k, 3, 3); }
 Json typeOf(Vec3d, const Knob& k) { return listOf(k, 3, 3); }
 Json typeOf(const Keyframes&, const Knob& k) {
-    return {{"type", "array"}, {"items", listOf(k, 4, 5)}};
+    return {{"type", "array"}, {"items", {{"anyOf", {listOf(k, 4, 5), listOf(k, 9, 9)}}}}};
 }
 template <class E>
 requires std::is_enum_v<E> Json typeOf(E value, const Knob&) {

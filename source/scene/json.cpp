@@ -66,8 +66,9 @@ Json toJson(Vec3d v) { return Json::array({v.x, v.y, v.z}); }
 Json toJson(const Keyframes& keyframes) {
     Json list = Json::array();
     for (const Keyframe& k : keyframes)
-        list.push_back({decimal(k.time), decimal(k.offset.x), decimal(k.offset.y),
-                        decimal(k.offset.z), decimal(k.turn)});
+        k.hasRates ? list.push_back({k.time, k.offset.x, k.offset.y, k.offset.z, k.turn,
+                                     k.velocity.x, k.velocity.y, k.velocity.z, k.spin})
+                   : list.push_back({k.time, k.offset.x, k.offset.y, k.offset.z, k.turn});
     return list;
 }
 template <class E>

@@ -197,16 +197,19 @@ void assign(Keyframes& value, const Json& json, const Knob& knob, const Place& p
     Keyframes keyframes;
     for (const Json& row : json) {
         const bool numbers =
-            row.is_array() && (row.size() == 4 || row.size() == 5) &&
+            row.is_array() && (row.size() == 4 || row.size() == 5 || row.size() == 9) &&
             std::all_of(row.begin(), row.end(), [](const Json& j) { return j.is_number(); });
         if (!numbers)
-            place.fail(path, fmt::format("expected keyframes [t, x, y, z] or [t, x, y, z, turn] in "
-                                         "s, m and degrees, found {}",
+            place.fail(path, fmt::format("expected keyframes [t, x, y, z], [t, x, y, z, turn] or "
+                                         "[t, x, y, z, turn, vx, vy, vz, spin] in s, m and "
+                                         "degrees, found {}",
                                          shown(row)));
-        const Vec3 offset{row[1].get<float>(), row[2].get<float>(), row[3].get<float>()};
-        requireRange(offset, row, knob, place, path);
-        keyframes.push_back(
-            {row[0].get<float>(), offset, row.size() == 5 ? row[4].get<float>() : 0});
+        auto at = [&](size_t k) { return k < row.size() ? row[k].get<double>() : 0.0; };
+        const Keyframe key{at(0),           {at(1), at(2), at(3)}, at(4),
+                           row.size() == 9, {at(5), at(6), at(7)}, at(8)};
+        requireRange(key.offset, row, knob, place, path);
+        requireRange(key.velocity, row, knob, place, path);
+        keyframes.push_back(key);
     }
     value = keyframes;
 }

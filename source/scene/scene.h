@@ -62,17 +62,21 @@ struct Body : Form {
     float mass = 0;      // kg, of a particle of a file; 0 = its column says
 };
 
-// Where a solid is at one time, relative to its place in the scene.
+// Where a solid is at one time, relative to its place in the scene: s, m, degrees. Second
+// differences of finely sampled motion ask for doubles.
 struct Keyframe {
-    float time = 0;
-    Vec3 offset;
-    float turn = 0;
+    double time = 0;
+    Vec3d offset;
+    double turn = 0;
+    bool hasRates = false;  // whether it also says how fast the solid is then: m/s, degrees/s
+    Vec3d velocity{};
+    double spin = 0;
     bool operator==(const Keyframe&) const = default;
-};  // s, m, degrees
+};
 using Keyframes = std::vector<Keyframe>;
 
 // An obstacle: fluid flows around it. It stands still, goes on and on with `velocity` and `spin`,
-// or moves as its keyframes say, on straight lines between them. With a density it floats: that is
+// or moves as its keyframes say (scene/motion.h). With a density it floats: that is
 // how it moves at the start, and fluid, gravity and what it runs into do the rest.
 struct Solid : Form {
     std::string name;         // of its columns in time series; "" = solid0, solid1, ...

@@ -166,13 +166,15 @@ void visitMember(S& s, const std::string& at, Visitor&& visit) {
     visit(at + ".keyframes", s.keyframes,
           Knob{"", -1e7f, 1e7f,
                "where it is when: [[t, x, y, z], ...] or [[t, x, y, z, turn], ...] in s, m and "
-               "degrees, relative "
-               "to its place here; on straight lines between, at rest before and after",
+               "degrees, relative to its place here; at rest before and after. On straight lines "
+               "between, or where its velocity changes alike from one to the next on a smooth "
+               "curve. [[t, x, y, z, turn, vx, vy, vz, spin], ...] say how fast it is as well",
                Restart});
     visit(at + ".motion", s.motion,
           Knob{"", 0, 0,
                "CSV with the keyframes, columns t, x, y, z or t, vx, vy, vz, and turn if it turns; "
-               "s, m and degrees, or units of the header, as x [mm]",
+               "s, m and degrees, or units of the header, as x [mm]; velocities change evenly "
+               "between their rows",
                Restart});
     visit(at + ".density", s.density,
           Knob{"kg/m³", 0, 1e5f,

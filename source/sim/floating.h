@@ -188,6 +188,10 @@ struct MoveFloating {
         Wrench w = wrenchOn(s);
         if (hold.solid == s) pull(w, body, m, v.solids[s]);
         if (v.c.dimensions == 2) w.force.z = w.torque.x = w.torque.y = 0;
+        const Vec3d spin = spinOf(body, m),
+                    spinRate = turning(body, m, w.torque - cross(spin, m.angularMomentum));
+        m.acceleration = m.acceleration + body.told * ((1 / body.mass) * w.force - m.acceleration);
+        m.spinRate = m.spinRate + body.told * (spinRate - m.spinRate);
         m.velocity = m.velocity + (kick * dt / body.mass) * w.force;
         m.angularMomentum = m.angularMomentum + (kick * dt) * w.torque;
         m.place = wrapped(m.place + (drift * dt) * m.velocity);
@@ -220,7 +224,10 @@ struct MoveFloating {
         SolidMotion& m = motions[s];
         const Vec3d before = m.velocity;
         m.velocity = {0, 0, 0};
-        if (hold.solid != s) return;
+        if (hold.solid != s) {
+            m.acceleration = {0, 0, 0};
+            return;
+        }
         if (m.left < 0 && !v.solids[s].steady) m.left = v.state->time - dt;
         const Vector<real> at = v.solids[s].middle;
         const Vec3d way =
@@ -232,6 +239,8 @@ struct MoveFloating {
         m.velocity = (far > 0 ? speed / far : 0) * way;
         if (hand.mass > 0) m.velocity = pushed(before, m.velocity);
         if (v.c.dimensions == 2) m.velocity.z = 0;
+        const Vec3d change = (1 / (kick * dt)) * (m.velocity - before);
+        m.acceleration = m.acceleration + 0.25 * (change - m.acceleration);
         m.place = m.place + (drift * dt) * m.velocity;
     }
     // From one velocity towards another, against the objects in its way.
@@ -258,7 +267,7 @@ struct LetGo {
     const RigidBody* bodies;
     SolidMotion* motions;
     HD void operator()(int s) const {
-        if (bodies[s].mass <= 0) motions[s].velocity = {0, 0, 0};
+        if (bodies[s].mass <= 0) motions[s].velocity = motions[s].acceleration = {0, 0, 0};
     }
 };
 
@@ -377,6 +386,12 @@ private:
         if (!solid.floats()) return body;
         const Mass mass = massOf(scene, solid);
         body.mass = mass.mass, body.centre = mass.centre;
+        double area = 0;  // m^2
+        for (const Vec3d& a : surfaceAreas(scene, solid, boundaryOf(scene, solid)))
+            area += length(a);
+        const double layer =
+            double(scene.fluid.restDensity) * double(scene.simulation.spacing) * area;
+        body.told = body.mass / (body.mass + layer);
         invertTransposed(mass.inertia, body.inverseInertia);
         return body;
     }

@@ -37,8 +37,10 @@ public:
                 {mass_.data()},
                 {outward_.data()},
                 {ownVelocity_.data()},
+                {ownAcceleration_.data()},
                 {slip_.data()},
                 {slipVelocity_.data()},
+                {flowVelocity_.data()},
                 {densityRate_.data()},
                 {shiftVelocity_.data()},
                 {shiftAcceleration_.data()},
@@ -143,8 +145,10 @@ public:
         return isNew;
     }
     void move() { moves_ = true, resize(slots_); }
+    void accelerate() { accelerates_ = moves_ = true, resize(slots_); }
     void letSlip() { slips_ = true, resize(slots_); }
     bool slips() const { return slips_; }
+    void continueFlow() { continues_ = true, resize(slots_); }
     void haveDensity() { hasDensity_ = true, resize(slots_); }
     // Fluid's density comes from a sum, or goes from step to step with a rate; with shifting its
     // particles leave the fluid's paths.
@@ -251,6 +255,10 @@ private:
             mass_.resize(slots);
             if (carriesVelocity_) outward_.resize(vectorSize(slots));
             if (moves_) ownVelocity_.resize(vectorSize(slots));
+            if (accelerates_) ownAcceleration_.resize(vectorSize(slots));
+            if (continues_)
+                slip_.resize(slots), outward_.resize(vectorSize(slots)),
+                    flowVelocity_.resize(vectorSize(slots));
             if (slips_) slip_.resize(slots), slipVelocity_.resize(vectorSize(slots));
             return;
         }
@@ -332,9 +340,10 @@ private:
     Device& device_;
     Kind kind_;
     bool carriesVelocity_ = kind_ == Kind::Fluid, hasDensity_ = kind_ == Kind::Fluid,
-         carriesDensity_ = false, shifts_ = false, moves_ = false, slips_ = false,
-         keepsVelocity_ = false, keepsState_ = false, keepsPlace_ = false, stepsLocally_ = false,
-         addsPairs_ = false, hasNormals_ = false, mixture_ = false, weighsViscosity_ = false;
+         carriesDensity_ = false, shifts_ = false, moves_ = false, accelerates_ = false,
+         slips_ = false, continues_ = false, keepsVelocity_ = false, keepsState_ = false,
+         keepsPlace_ = false, stepsLocally_ = false, addsPairs_ = false, hasNormals_ = false,
+         mixture_ = false, weighsViscosity_ = false;
     int slots_ = 0, side_ = 0;
     Buffer<int, Device> id_{device_}, sortedId_{device_}, key_{device_}, order_{device_},
         cellStart_{device_};
@@ -351,8 +360,8 @@ private:
     Buffer<real, Device> timeBin_{device_}, sortedTimeBin_{device_}, sortedAcceleration_{device_},
         sortedDensityRate_{device_};
     Buffer<real, Device> density_{device_}, inverseDensity_{device_}, pressureOverRho2_{device_},
-        mass_{device_}, outward_{device_}, ownVelocity_{device_}, slip_{device_},
-        slipVelocity_{device_}, viscousVolume_{device_};
+        mass_{device_}, outward_{device_}, ownVelocity_{device_}, ownAcceleration_{device_},
+        slip_{device_}, slipVelocity_{device_}, flowVelocity_{device_}, viscousVolume_{device_};
 };
 
 }  // namespace spindrift::LANES

@@ -51,7 +51,7 @@ template <class Device> template <class K> void SimulationOn<Device>::makePlan()
             chooseStep();
             moveThings(&S::template moveFloating<2, true>);
             addPass("kick", &S::template onFluid<Integrate<Kick>>);
-            addPass("density rate", ratePass<K>());
+            addRate<K>();
             addPass("foresee density", &S::template onFluid<Integrate<DriftDensity>>);
             addPass("equation of state", &S::template onFluid<ApplyEquationOfState>);
             addPass("walls", wallPass<K>(), Initial::No, whyNoWallPressure());
@@ -127,7 +127,7 @@ template <class Device> template <class K> void SimulationOn<Device>::stepLocall
             stir_.radius > 0 ? "" : "nobody stirs");
     addPass("moment", &S::chooseSubstep);
     if (!carriesDensity(scene_)) return addPass("drift", &S::template onFluid<Integrate<Drift>>);
-    addPass("density rate", ratePass<K>());
+    addRate<K>();
     addPass("drift", &S::template onFluid<Integrate<Drift | DriftDensity>>);
 }
 
@@ -150,12 +150,22 @@ void SimulationOn<Device>::advance(Names names) {
     if (!carriesDensity(scene_))
         return addPass(names.both, &S::template onFluid<Integrate<kick | drift>>);
     if constexpr (kick != 0) addPass(names.kick, &S::template onFluid<Integrate<kick>>);
-    addPass(shifts() ? "transport" : "density rate", ratePass<K>());
+    addRate<K>();
     addPass(names.drift,
             fillsSpace()
                 ? &S::template onFluid<Integrate<drift | DriftDensity | DriftShifted | KeepVolume>>
             : shifts() ? &S::template onFluid<Integrate<drift | DriftDensity | DriftShifted>>
                        : &S::template onFluid<Integrate<drift | DriftDensity>>);
+}
+
+// Of the velocities that forces have led to, also of what floats: a step late light ones would
+// swing against the fluid that they press together.
+template <class Device> template <class K> void SimulationOn<Device>::addRate() {
+    using S = SimulationOn;
+    addPass("velocity of walls", &S::tellWallsVelocity, Initial::No, whyNothingFloats());
+    addPass("flow at walls", &S::template onWalls<ContinueFlowIntoWalls<K>>, Initial::No,
+            whyFlowEndsAtWalls());
+    addPass(shifts() ? "transport" : "density rate", ratePass<K>());
 }
 
 template <class Device> template <class K> auto SimulationOn<Device>::wallPass() const

@@ -14,6 +14,10 @@ struct RigidBody {
     real stiffness, damping,
         friction;  // of one ball where it touches (floating.h): N/m, N s/m, Coulomb's coefficient
     real deepestBall;  // m
+    // What share of a change of its acceleration the fluid at its surface is told in a step. All of
+    // it would be too much for light bodies: what the layers of boundary particles then press with
+    // is as if fluid a spacing thick around the body were part of its mass, but a step late.
+    double told = 1;
 };
 
 // How near a solid that floats comes to the box or another solid, and which way the fluid would
@@ -79,12 +83,15 @@ struct Turn {
     HD Vec3d out(Vec3d a) const { return a.x * axis[0] + a.y * axis[1] + a.z * axis[2]; }
     HD Vec3d in(Vec3d a) const { return {dot(a, axis[0]), dot(a, axis[1]), dot(a, axis[2])}; }
 };
-// rad/s
-HD inline Vec3d spinOf(const RigidBody& body, const SolidMotion& m) {
+// rad/s of an angular momentum, rad/s^2 of a torque.
+HD inline Vec3d turning(const RigidBody& body, const SolidMotion& m, Vec3d moment) {
     const Turn turn(m.turn);
-    const Vec3d l = turn.in(m.angularMomentum);
+    const Vec3d l = turn.in(moment);
     return turn.out({dot(body.inverseInertia[0], l), dot(body.inverseInertia[1], l),
                      dot(body.inverseInertia[2], l)});
+}
+HD inline Vec3d spinOf(const RigidBody& body, const SolidMotion& m) {
+    return turning(body, m, m.angularMomentum);
 }
 
 // Where a solid that floats is, `ahead` seconds further on.
@@ -99,6 +106,9 @@ HD inline void placeFloating(SolidState& s, const RigidBody& body, SolidMotion m
     s.middle = narrow(centre + arm);
     s.velocity = narrow(m.velocity + cross(spin, arm));
     s.spin = narrow(spin);
+    s.acceleration =
+        narrow(m.acceleration + cross(m.spinRate, arm) + cross(spin, cross(spin, arm)));
+    s.spinRate = narrow(m.spinRate);
     s.speed = real(sqrt(dot(m.velocity, m.velocity)) + double(s.reach) * sqrt(dot(spin, spin)));
 }
 

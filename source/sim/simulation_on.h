@@ -44,6 +44,7 @@ public:
         walls_.upload(wallsAtHome_, {}, {}, fluidCount_);
         solids_.place(scene, wallsAtHome_, solidSizes_, fluidCount_);
         if (wallsMove()) walls_.move();
+        if (solids_.moves()) walls_.accelerate();
         if (solids_.floats())
             solids_.reserveLoads(walls_.slots()),
                 floating_.bounces((fluidCount_ + clusterSize - 1) / clusterSize * clusterSize);
@@ -230,8 +231,9 @@ private:
         const bool before = usesHalfLists();
         scene_ = scene;
         if (usesHalfLists() != before) displacementBound_ = 1e30;  // other lists
-        const bool sticksNow = fluidSticks() && walls_.carryVelocity();
         if (letsSlip(scene)) walls_.letSlip();
+        if (!*whyFlowEndsAtWalls()) walls_.continueFlow();
+        const bool sticksNow = fluidSticks() && walls_.carryVelocity();
         withKernel(scene_.simulation.kernel, [&](auto kernel) {
             using K = decltype(kernel);
             parameters_ = makeStepParameters<K>(scene_, extent_);
@@ -268,6 +270,7 @@ private:
     };
     template <class K, unsigned kick, unsigned drift> void advance(Names);
     template <class K> void stepLocally();
+    template <class K> void addRate();
     template <class K> PassFunction wallPass() const;
     template <class K> PassFunction forcePass() const;
     template <class K, ViscosityForm form> PassFunction forcesOf() const;
@@ -325,6 +328,11 @@ private:
         return solids_.floats()      ? ""
                : solids_.count() > 0 ? "no solid floats"
                                      : "there are no solids";
+    }
+    const char* whyFlowEndsAtWalls() const {
+        if (!wallsCarryPressure() || !carriesDensity(scene_))
+            return "no divergence is asked for at walls";
+        return solids_.moves() || letsSlip(scene_) ? "" : "no solid moves, and no wall lets slip";
     }
     const char* whyNoWallPressure() const {
         if (wallCount_ == 0) return "there are no boundary particles";
@@ -396,7 +404,7 @@ private:
     PassTime* timeOf(const char* name) {
         for (PassTime& t : times_)
             if (t.name == name) return &t;
-        times_.reserve(32);  // rows point into it
+        times_.reserve(48);  // rows point into it
         CHECK(times_.size() < times_.capacity());
         return &times_.emplace_back(PassTime{name, 0, 0});
     }
@@ -415,7 +423,7 @@ private:
         if (solids_.moves()) return;
         solids_.keepMasses(walls_.view());
         solids_.letMove();
-        walls_.move();
+        walls_.accelerate();
         refresh(scene_);
     }
     bool wallsMove() const {
@@ -478,6 +486,9 @@ private:
             fluid_.slots(),
             KeepOutOfSolids{view(), floats ? floating_.bounces(fluid_.slots()) : Bounces{}});
         if (floats) floating_.takeMomentum(scene_, view());
+    }
+    void tellWallsVelocity() {
+        solids_.tellVelocity(view(), floating_.bodies(), floating_.motions());
     }
     void placeSolids(double halfWay) {
         solids_.move(clock_.data(), halfWay, halfWay, floating_.bodies(), floating_.motions());

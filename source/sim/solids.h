@@ -16,27 +16,31 @@
 
 namespace spindrift::LANES {
 
-// Between keys [first, end): on straight lines, at rest before and after. m and radians, and those
-// per second.
+// As the last one of keys [first, end) before `time` says. m and radians, and those per second and
+// per second squared.
 struct KeyedMotion {
-    Vec3d offset, velocity;
-    double turn, turnRate;
+    Vec3d offset, velocity, acceleration;
+    double turn, spin, spinRate;
 };
 HD inline KeyedMotion motionAt(const MotionKey* keys, int first, int end, double time) {
     int next = first;
-    while (next < end && keys[next].time <= time) ++next;
-    const bool rests = next == first || next == end;
-    const MotionKey &from = keys[next == first ? next : next - 1],
-                    &to = keys[next == end ? next - 1 : next];
-    const double perSecond = rests ? 0 : 1 / (to.time - from.time),
-                 share = (time - from.time) * perSecond;
-    const Vec3d way = to.offset - from.offset;
-    return {from.offset + share * way, perSecond * way, from.turn + share * (to.turn - from.turn),
-            (to.turn - from.turn) * perSecond};
+    for (int after = end; next < after;) {
+        const int middle = (next + after) / 2;
+        keys[middle].time <= time ? next = middle + 1 : after = middle;
+    }
+    if (next == first) return {keys[first].offset, {}, {}, keys[first].turn, 0, 0};
+    const MotionKey& k = keys[next - 1];
+    const double s = time - k.time, half = s / 2, third = s / 3;
+    return {k.offset + s * (k.velocity + half * (k.acceleration + third * k.jerk)),
+            k.velocity + s * (k.acceleration + half * k.jerk),
+            k.acceleration + s * k.jerk,
+            k.turn + s * (k.spin + half * (k.spinRate + third * k.spinJerk)),
+            k.spin + s * (k.spinRate + half * k.spinJerk),
+            k.spinRate + s * k.spinJerk};
 }
 
-// Where a solid is now and how it moves: on straight lines between its keys. It does not accelerate
-// but for an instant at each key. What floats or was dragged is where its motion says.
+// Where a solid is now and how it moves, by its keys. What floats or was dragged is where its
+// motion says.
 struct MoveSolids {
     using Index = int;
     SolidState* solids;
@@ -51,10 +55,12 @@ struct MoveSolids {
         if (bodies[i].mass > 0) return placeFloating(s, bodies[i], motions[i], ahead * state->dt);
         const double left = motions[i].left, now = state->time - stepsBack * state->dt;
         KeyedMotion m = motionAt(keys, s.firstKey, s.endKey, left >= 0 && left < now ? left : now);
-        if (left >= 0) m.velocity = {0, 0, 0}, m.turnRate = 0;
+        if (left >= 0) m.velocity = m.acceleration = {0, 0, 0}, m.spin = m.spinRate = 0;
         s.middle = s.home + Vector<real>{real(m.offset.x), real(m.offset.y), real(m.offset.z)};
         s.velocity = Vector<real>{real(m.velocity.x), real(m.velocity.y), real(m.velocity.z)};
-        turn(s, m.turn, m.turnRate);
+        s.acceleration =
+            Vector<real>{real(m.acceleration.x), real(m.acceleration.y), real(m.acceleration.z)};
+        turn(s, m);
         addDragged(s, motions[i], ahead * state->dt);
     }
     HD static void addDragged(SolidState& s, const SolidMotion& m, double ahead) {
@@ -62,17 +68,20 @@ struct MoveSolids {
         s.middle = s.middle + Vector<real>{real(place.x), real(place.y), real(place.z)};
         s.velocity =
             s.velocity + Vector<real>{real(m.velocity.x), real(m.velocity.y), real(m.velocity.z)};
+        s.acceleration =
+            s.acceleration +
+            Vector<real>{real(m.acceleration.x), real(m.acceleration.y), real(m.acceleration.z)};
         s.speed = real(sqrt(dot(m.velocity, m.velocity)));
     }
-    HD static void turn(SolidState& s, double angle, double rate) {
+    HD static void turn(SolidState& s, const KeyedMotion& m) {
         const int k = s.spinAxis, y = (k + 1) % 3, z = (k + 2) % 3;
-        const real cosine = real(cos(angle)), sine = real(sin(angle));
+        const real cosine = real(cos(m.turn)), sine = real(sin(m.turn));
         auto set = [](Vector<real>& v, int component, real value) {
             (component == 0 ? v.x : component == 1 ? v.y : v.z) = value;
         };
         for (int a = 0; a < 3; ++a) s.axis[a] = {0, 0, 0};
-        s.spin = {0, 0, 0};
-        set(s.axis[k], k, 1), set(s.spin, k, real(rate));
+        s.spin = s.spinRate = {0, 0, 0};
+        set(s.axis[k], k, 1), set(s.spin, k, real(m.spin)), set(s.spinRate, k, real(m.spinRate));
         set(s.axis[y], y, cosine), set(s.axis[y], z, sine);
         set(s.axis[z], y, -sine), set(s.axis[z], z, cosine);
     }
@@ -162,21 +171,52 @@ struct PlaceWalls {
         take(out.x, v.c.slipBelow.x, v.c.slipAbove.x);
         take(out.y, v.c.slipBelow.y, v.c.slipAbove.y);
         take(out.z, v.c.slipBelow.z, v.c.slipAbove.z);
-        finish(i, out, wallVelocity(v.c, x), -slip);
+        finish(i, out, wallVelocity(v.c, x), {0, 0, 0}, real(-1e-30) - slip);
     }
     HD void placeOfSolid(int i, int k, const SolidState& s) const {
         const Vector<real> own = load(home.position, k) - s.home, arm = turned(s, own);
         Vector<real> normal{0, 0, 0};
         const real distance = surface(s, own, normal);
         store(v.walls.position, i, intoDomain(v.c, s.middle + arm));
-        finish(i, distance * turned(s, normal), s.velocity + cross(s.spin, arm), s.slip);
+        finish(i, distance * turned(s, normal), s.velocity + cross(s.spin, arm),
+               accelerationAt(s, arm), s.slip);
         if (s.grace > 0 && v.walls.outward.data)
             store(v.walls.outward, i, turned(s, load(home.face, k)));
     }
-    HD void finish(int i, Vector<real> outward, Vector<real> velocity, real slip) const {
+    // Fluid that sticks to the surface turns with it; other fluid lets it slide past.
+    HD Vector<real> accelerationAt(const SolidState& s, Vector<real> arm) const {
+        const Vector<real> a = s.acceleration + cross(s.spinRate, arm);
+        const bool sticks = s.slip == 0 && v.c.laminar > 0;
+        return sticks ? a + cross(s.spin, cross(s.spin, arm)) : a;
+    }
+    HD void finish(int i, Vector<real> outward, Vector<real> velocity, Vector<real> acceleration,
+                   real slip) const {
         if (v.walls.slip.data) store(v.walls.slip, i, slip);
         if (v.walls.outward.data) store(v.walls.outward, i, outward);
         if (v.walls.ownVelocity.data) store(v.walls.ownVelocity, i, velocity);
+        if (v.walls.ownAcceleration.data) store(v.walls.ownAcceleration, i, acceleration);
+    }
+};
+
+// The velocity of what floats is its particles' as soon as it changes.
+struct TellVelocity {
+    using Index = int;
+    View v;
+    WallsAtHome home;
+    const RigidBody* bodies;
+    const SolidMotion* motions;
+    HD void operator()(int i) const {
+        if (v.walls.id[i] < 0) return;
+        const int k = v.walls.id[i] - home.firstId, solid = home.solidOf(v.walls.id[i]);
+        if (solid < 0 || bodies[solid].mass <= 0) return;
+        const SolidState& s = v.solids[solid];
+        const Vector<real> arm =
+            turned(s, load(home.position, k) - s.home) + (s.middle - s.centreOfMass);
+        const Vec3d velocity =
+            motions[solid].velocity + cross(spinOf(bodies[solid], motions[solid]),
+                                            Vec3d{double(arm.x), double(arm.y), double(arm.z)});
+        store(v.walls.ownVelocity, i,
+              Vector<real>{real(velocity.x), real(velocity.y), real(velocity.z)});
     }
 };
 
@@ -211,7 +251,8 @@ template <class Kernel, class... Terms> struct ComputeWallLoads<Kernel, TermList
         const Wall<R> wall = loadWall<needs>(v.walls, b);
         Acceleration<R> a{};
         const Vector<R> x = load(v.walls.position, b);
-        const Vector<R> pull = R(1 / v.c.restDensity) * bodyForce(v.c, gravityNow(v), x);
+        const Vector<R> pull = R(1 / v.c.restDensity) *
+                               (bodyForce(v.c, gravityNow(v), x) - ownAcceleration(v.walls, b));
         Vector<R> seen{0, 0, 0}, atRest{0, 0, 0};
         forNeighbours<Lists::All>(v, v.fluidNearWalls, b, x, [&](auto p, JCluster j) LANE_CALL {
             p.r = R(-1) * p.r;
@@ -443,6 +484,9 @@ public:
         device_.forEach(count_, MeetWalls{states_.data(), c, size_, spacing_});
     }
     void placeWalls(const View& v) { device_.forEach(v.walls.slots, PlaceWalls{v, home()}); }
+    void tellVelocity(const View& v, const RigidBody* bodies, const SolidMotion* motions) {
+        device_.forEach(v.walls.slots, TellVelocity{v, home(), bodies, motions});
+    }
     void keepMasses(const Particles& walls) {
         device_.forEach(walls.slots, KeepWallMass{walls, home()});
     }

@@ -32,11 +32,14 @@ struct Particles {
     ScalarField mass;              // boundary particles only (Akinci 2012): m_b / m
     VectorField outward;  // m, boundary particles only: from the nearest point of their surface,
                           // where fluid sticks to it
-    VectorField ownVelocity;    // m/s, boundary particles only: of the wall itself, where any moves
+    VectorField ownVelocity;  // m/s, boundary particles only: of the wall itself, where any moves
+    VectorField ownAcceleration;  // m/s², the same, where any may accelerate
     ScalarField slip;           // m, of boundary particles where any wall lets fluid slip: Navier's
                                 // length; negative of the domain's faces, across which velocities
                                 // are components
     VectorField slipVelocity;   // m/s, and of the fluid at their surface
+    VectorField flowVelocity;   // m/s, and with which the flow there goes on into the wall, for its
+                                // divergence
     ScalarField densityRate;    // kg/(m^3 s), where density is carried
     VectorField shiftVelocity;  // m/s, where particles are shifted: how much faster than the fluid
                                 // they move,
@@ -51,8 +54,8 @@ struct Particles {
                                // has its volume and pressure; forces are divided by the ratio
     ScalarField viscosity;     // of a mixture, Pa s
     ScalarField timeBin;       // local steps only: how short a particle's own step is, longest /
-                          // 2^level, or how it rests
-    uint8_t* active;  // local steps only: per cluster, whether it is evaluated now
+                               // 2^level, or how it rests
+    uint8_t* active;           // local steps only: per cluster, whether it is evaluated now
 };
 
 // The level of who rests.
@@ -205,10 +208,11 @@ struct StepParameters {
 struct SolidState {
     Vector<real> home,
         middle;  // m, relative to the domain's lower corner: at its place in the scene, now
-    Vector<real> velocity, spin;  // m/s, rad/s
-    Vector<real> axis[3];         // its own axes in space
-    int firstKey, endKey;         // of its motion
-    bool steady;                  // which goes on and on
+    Vector<real> velocity, spin;          // m/s, rad/s
+    Vector<real> acceleration, spinRate;  // m/s², rad/s^2, of its middle and of the spin
+    Vector<real> axis[3];                 // its own axes in space
+    int firstKey, endKey;                 // of its motion
+    bool steady;                          // which goes on and on
     int spinAxis;
     int planes;
     Vector<real> normal[Convex::mostPlanes];
@@ -284,9 +288,20 @@ template <class I> HD inline Vector<Real<I>> ownVelocity(const Particles& walls,
     using R = Real<I>;
     return walls.ownVelocity.data ? load(walls.ownVelocity, b) : Vector<R>{R(0), R(0), R(0)};
 }
-// The same, along the wall that of the fluid at its surface, where that may slip.
+// And its acceleration, m/s².
+template <class I> HD inline Vector<Real<I>> ownAcceleration(const Particles& walls, I b) {
+    using R = Real<I>;
+    return walls.ownAcceleration.data ? load(walls.ownAcceleration, b)
+                                      : Vector<R>{R(0), R(0), R(0)};
+}
+// Its velocity, along the wall that of the fluid at its surface, where that may slip.
 template <class I> HD inline Vector<Real<I>> surfaceVelocity(const Particles& walls, I b) {
     return walls.slipVelocity.data ? load(walls.slipVelocity, b) : ownVelocity(walls, b);
+}
+
+// And with which its divergence sees them.
+template <class I> HD inline Vector<Real<I>> flowVelocity(const Particles& walls, I b) {
+    return walls.flowVelocity.data ? load(walls.flowVelocity, b) : ownVelocity(walls, b);
 }
 
 // Of the domain's walls at one of their particles, m/s.

@@ -279,6 +279,33 @@ TEST(Floating, MouseDragsThem) {
     }
 }
 
+// A cylinder that is thrown into a box of fluid at rest gives its momentum to both, the fluid's
+// share by its added mass (Lamb 1932; 1.07 in this box). A tenth to ten times as dense.
+TEST(Floating, WhatIsThrownTakesItsAddedMassAlong) {
+    for (const char* formulation : {"delta_sph", "delta_plus"})
+        for (double ratio : {0.1, 0.3, 1.0, 3.0, 10.0}) {
+            Scene scene = sceneOf(
+                {std::string("simulation.formulation=") + formulation, "simulation.dimensions=2",
+                 "simulation.gravity=0,0,0", "simulation.spacing=0.02", "time.mode=cfl",
+                 "domain.max=1,1,1", "fluid.sound_speed=40", "fluid.artificial_viscosity=0",
+                 R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[1,1,1]}])",
+                 R"(solids=[{"shape":"sphere","center":[0.5,0.5,0.5],"radius":0.1,)"
+                 R"("velocity":[0,0.1,0],"density":)" +
+                     std::to_string(1000 * ratio) + "}]"});
+            auto simulation = makeSimulation(scene);
+            double speed = 0;
+            constexpr int First = 20, Last = 40;  // 5 ms each; a mean over what is left of the sound
+            for (int k = 1; k <= Last; ++k) {
+                simulation->stopAt(0.005 * k);
+                while (simulation->clock().time < 0.005 * k) simulation->step();
+                if (k > First)
+                    speed += simulation->measure().solids[0].velocity.y / (Last - First);
+            }
+            EXPECT_NEAR(speed / (0.1 * ratio / (ratio + 1.071)), 1, 0.07)
+                << formulation << " " << ratio;
+        }
+}
+
 // A plate that the mouse takes from its keyframes stays where it is left, also in a run that goes
 // on; one that turns on and on turns there.
 TEST(Floating, WhatIsDraggedLeavesItsKeyframes) {

@@ -90,5 +90,21 @@ TEST(ValidationFigures, DivergedRunsHaveNoFigures) {
     for (const Metric& m : run.metrics) EXPECT_TRUE(std::isnan(m.value)) << m.name;
 }
 
+// Round ones and ones with edges, whatever steps are made of.
+TEST(ValidationFigures, BodiesThatAccelerateFeelTheirAddedMassByAnyMethod) {
+    auto wrong = [](const std::string& name, Formulation formulation, Integrator integrator) {
+        return runAt(caseNamed(name), 5, [&](Scene& s) {
+                   s.simulation.formulation = formulation, s.time.integrator = integrator;
+               }).metrics[0].value;
+    };
+    using enum Formulation;
+    for (const std::string name : {"added_mass", "added_mass_square"})
+        for (Formulation formulation : {DeltaSph, DeltaPlus, TransportVelocity})
+            EXPECT_LT(std::abs(wrong(name, formulation, Integrator::SymplecticEuler)), 5)
+                << name << int(formulation);
+    for (Integrator integrator : {Integrator::VelocityVerlet, Integrator::PredictorCorrector})
+        EXPECT_LT(std::abs(wrong("added_mass", DeltaSph, integrator)), 5) << int(integrator);
+}
+
 }  // namespace
 }  // namespace spindrift

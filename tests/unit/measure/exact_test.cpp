@@ -96,6 +96,28 @@ TEST(Exact, WeakViscosityDampsAsLambSays) {
     }
 }
 
+// The sum over all images, brute force; far walls change nothing.
+TEST(Exact, BoxesMirrorBodies) {
+    const double pi = std::numbers::pi;
+    for (const Vec3d box : {Vec3d{1, 1, 1}, Vec3d{2, 1, 1}, Vec3d{1, 1.5, 1}}) {
+        double field = 0;
+        for (int m = -8; m <= 8; ++m)
+            for (int n = -20000; n <= 20000; ++n) {
+                const double X = m * box.x, Y = n * box.y, r2 = X * X + Y * Y;
+                if (r2 > 0) field += (m % 2 ? -1 : 1) * (Y * Y - X * X) / (r2 * r2);
+            }
+        const double a = 0.1, e = a * a * field;
+        const BodyInBox body = bodyInBox(pi * a * a, pi * a * a, box, 2);
+        EXPECT_NEAR(body.addedMass, pi * a * a * (1 + e) / (1 - e), 1e-5) << box.x << box.y;
+        EXPECT_NEAR(body.faster, 1 / (1 - e), 1e-3);
+    }
+    const double ball = 4 * pi / 3;
+    EXPECT_NEAR(bodyInBox(ball / 2, ball, {100, 100, 100}, 3).addedMass, ball / 2, 1e-4);
+    EXPECT_NEAR(bodyInBox(ball / 2, ball, {6, 6, 6}, 3).addedMass / ball, 0.5344, 1e-4);
+    // Constant from the start: 2 A sqrt(t).
+    EXPECT_NEAR(bassetIntegral(3, 1e-6, 4), 12, 1e-4);
+}
+
 // In oil as thick as this drag is as the speed: v = terminal (1 - exp(-t / T)).
 TEST(Exact, SpheresSink) {
     SettlingSphere sphere{0.01, 2000, 1000, 1000, 10, 0.05};

@@ -123,6 +123,63 @@ TEST(Solids, DistancesInsideAreExact) {
                 1e-6);
 }
 
+// Where it is `s` after the key, and how it moves there.
+struct Moved {
+    double x, velocity, acceleration;
+};
+Moved at(const MotionKey& k, double s) {
+    return {k.offset.x + s * (k.velocity.x + s / 2 * (k.acceleration.x + s / 3 * k.jerk.x)),
+            k.velocity.x + s * (k.acceleration.x + s / 2 * k.jerk.x),
+            k.acceleration.x + s * k.jerk.x};
+}
+
+// Corners stay where few keyframes make straight lines; finely sampled motion is the smooth one
+// that it was sampled of, however it is sampled.
+TEST(Solids, KeyframesAreCornersOrSamplesOfSmoothMotion) {
+    Solid solid;
+    solid.keyframes = {{0, {}, 0}, {1, {1, 0, 0}, 0}, {2, {1, 0, 0}, 0}, {3, {2, 0, 0}, 90}};
+    std::vector<MotionKey> keys = motionOf(solid);
+    for (size_t k = 0; k < 4; ++k) {
+        EXPECT_EQ(keys[k].acceleration.x, 0);
+        EXPECT_EQ(keys[k].jerk.x, 0);
+    }
+    EXPECT_EQ(keys[0].velocity.x, 1);
+    EXPECT_EQ(keys[1].velocity.x, 0);
+    EXPECT_NEAR(keys[2].spin, std::numbers::pi / 2, 1e-12);
+    EXPECT_EQ(keys[3].spin, 0);
+    EXPECT_NEAR(largestSpeed(solid), 1 + std::numbers::pi / 2 * reachOf(solid), 1e-6);
+
+    for (bool rates : {false, true})
+        for (bool uneven : {false, true})
+            for (int perPeriod : {12, 40, 1000}) {
+                SCOPED_TRACE(testing::Message() << rates << uneven << " " << perPeriod);
+                solid.keyframes.clear();
+                const double pi = std::numbers::pi, step = 2 * pi / perPeriod;
+                for (int i = 0; i <= perPeriod; ++i) {
+                    const double t = step * (i + (uneven ? 0.2 * std::sin(3.0 * i) : 0));
+                    solid.keyframes.push_back(
+                        {t, {1 - std::cos(t), 0, 0}, 0, rates, {std::sin(t), 0, 0}, 0});
+                }
+                keys = motionOf(solid);
+                for (size_t k = 1; k + 2 < keys.size(); ++k)
+                    for (double share : {0.0, 0.3, 0.9}) {
+                        const double s = share * (keys[k + 1].time - keys[k].time),
+                                     t = keys[k].time + s;
+                        EXPECT_NEAR(at(keys[k], s).x, 1 - std::cos(t), 0.1 * step * step) << k;
+                        EXPECT_NEAR(at(keys[k], s).velocity, std::sin(t), 0.2 * step) << k;
+                        EXPECT_NEAR(at(keys[k], s).acceleration, std::cos(t), 1.5 * step) << k;
+                    }
+            }
+    // From rest on: velocity grows evenly from the first moment.
+    solid.keyframes.clear();
+    for (int i = 0; i <= 20; ++i) solid.keyframes.push_back({0.1 * i, {0.005 * i * i, 0, 0}, 0});
+    for (const MotionKey& k : motionOf(solid)) {
+        if (k.time > 1.95) continue;  // it stands still from there on
+        EXPECT_NEAR(k.velocity.x, k.time, 1e-9);
+        EXPECT_NEAR(k.acceleration.x, 1, 1e-9);
+    }
+}
+
 TEST(Solids, MotionFromACsvIsKeyframes) {
     const std::string folder = testing::TempDir();
     std::ofstream(folder + "/places.csv") << "t, x, y, z, turn\n0, 0, 0, 0, 0\n1, 0.5, 0, 0, 90\n";
@@ -135,9 +192,11 @@ TEST(Solids, MotionFromACsvIsKeyframes) {
     const Scene places = scene("places.csv"), speeds = scene("speeds.csv");
     EXPECT_EQ(places.solids[0].keyframes, (Keyframes{{0, {0, 0, 0}, 0}, {1, {0.5f, 0, 0}, 90}}));
     EXPECT_EQ(places.solids[0].motion, "");
-    EXPECT_EQ(speeds.solids[0].keyframes,
-              (Keyframes{{0, {0, 0, 0}, 0}, {1, {0.5f, 0, 0}, 0}, {2, {1.5f, 0, 0}, 0}}));
+    EXPECT_EQ(speeds.solids[0].keyframes, (Keyframes{{0, {0, 0, 0}, 0, true, {0, 0, 0}, 0},
+                                                     {1, {0.5, 0, 0}, 0, true, {1, 0, 0}, 0},
+                                                     {2, {1.5, 0, 0}, 0, true, {1, 0, 0}, 0}}));
     EXPECT_NEAR(largestSpeed(speeds.solids[0]), 1, 1e-6);
+    EXPECT_EQ(parseScene(writeScene(speeds), "").solids[0].keyframes, speeds.solids[0].keyframes);
     try {
         scene("wrong.csv");
         FAIL();

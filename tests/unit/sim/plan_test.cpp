@@ -34,7 +34,7 @@ const Expected Scenes[] = {
      "solids sort neighbours density walls forces solid-forces extremes time-step floating-solids "
      "integrate laminar-viscosity,-Monaghan artificial-viscosity "
      "solid-collisions",
-     310},
+     312},
     {"artery",
      "solids sort neighbours density walls forces contact extremes time-step objects integrate "
      "laminar-viscosity,-Monaghan artificial-viscosity "
