@@ -32,7 +32,8 @@ double leastStep(const Scene& scene) {
         nu = std::max(nu, double(viscosity(scene, body)) / restDensity(scene, body));
     const double sound = scene.time.cfl * h / (4 * mostSoundSpeed(scene)),
                  viscous = nu > 0 ? 0.125 * h * h / nu : sound;
-    return 1e-3 * std::min({sound, viscous, double(scene.time.maxStep)});
+    const double most = scene.time.maxStep > 0 ? double(scene.time.maxStep) : sound;
+    return 1e-3 * std::min({sound, viscous, most});
 }
 
 constexpr double MachLimit = 3;
@@ -118,7 +119,9 @@ Scene HealthGuard::shortened() const {
     Scene s = scene_;
     if (share_ == 1) return s;
     s.time.step *= float(share_), s.time.cfl *= float(share_);
-    if (stepBefore_ > 0) s.time.maxStep = std::min(s.time.maxStep, float(share_ * stepBefore_));
+    const float shorter = float(share_ * stepBefore_);
+    if (stepBefore_ > 0 && (s.time.maxStep <= 0 || s.time.maxStep > shorter))
+        s.time.maxStep = shorter;
     return s;
 }
 

@@ -226,9 +226,9 @@ struct Fluid {
 struct TimeKnobs {
     TimeMode mode = TimeMode::Cfl;
     Integrator integrator = Integrator::SymplecticEuler;
-    float step = 0.0005f;   // s, used by fixed
-    float cfl = 0.4f;       // Courant number: dt <= cfl h / (c + |v|), h = R/2
-    float maxStep = 0.01f;  // s
+    float step = 0.0005f;  // s, used by fixed
+    float cfl = 0.4f;      // Courant number: dt <= cfl h / (c + |v|), h = R/2
+    float maxStep = 0;     // s, 0 = as long as sound and forces let it be
     float restSpeed =
         0.0001f;  // of local steps: share of the speed of sound below which fluid may rest
     int retries =

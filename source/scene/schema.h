@@ -474,7 +474,8 @@ template <class S, class Visitor> void visitPhysics(S& s, Visitor&& visit) {
     visit("time.step", s.time.step, Knob{"s", 1e-12f, 100, "time step when fixed"});
     visit("time.cfl", s.time.cfl, Knob{"", 0.01f, 1, "Courant number: share of the stable step"});
     visit("time.max_step", s.time.maxStep,
-          Knob{"s", 1e-12f, 100, "longest step that cfl and local take"});
+          Knob{"s", 0, 1e6f,
+               "longest step that cfl and local take, 0 = what sound, forces and viscosity allow"});
     visit("time.rest_speed", s.time.restSpeed,
           Knob{"", 0, 0.1f,
                "local: slower than this share of the speed of sound, fluid may fall asleep; 0 = "

@@ -254,7 +254,8 @@ StepParameters makeStepParameters(const Scene& s, const FluidExtent& fluid) {
     auto inverse = [](float length) { return length > 0 ? real(1 / double(length)) : real(0); };
     c.inversePeriod = {inverse(period.x), inverse(period.y), inverse(period.z)};
     c.restitution = s.walls.restitution, c.friction = s.walls.friction;
-    c.cfl = s.time.cfl, c.maxStep = real(std::min(double(s.time.maxStep), longestStep(s))),
+    const double most = s.time.maxStep > 0 ? double(s.time.maxStep) : 1e9;
+    c.cfl = s.time.cfl, c.maxStep = real(std::min(most, longestStep(s))),
     c.restSpeed = s.time.restSpeed;
     c.fixedStep = s.time.mode == TimeMode::Fixed ? real(s.time.step) : real(0);
     return c;

@@ -294,12 +294,12 @@ TEST(Floating, WhatIsThrownTakesItsAddedMassAlong) {
                      std::to_string(1000 * ratio) + "}]"});
             auto simulation = makeSimulation(scene);
             double speed = 0;
-            constexpr int First = 20, Last = 40;  // 5 ms each; a mean over what is left of the sound
+            constexpr int First = 20,
+                          Last = 40;  // 5 ms each; a mean over what is left of the sound
             for (int k = 1; k <= Last; ++k) {
                 simulation->stopAt(0.005 * k);
                 while (simulation->clock().time < 0.005 * k) simulation->step();
-                if (k > First)
-                    speed += simulation->measure().solids[0].velocity.y / (Last - First);
+                if (k > First) speed += simulation->measure().solids[0].velocity.y / (Last - First);
             }
             EXPECT_NEAR(speed / (0.1 * ratio / (ratio + 1.071)), 1, 0.07)
                 << formulation << " " << ratio;

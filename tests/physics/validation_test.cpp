@@ -93,9 +93,12 @@ TEST(ValidationFigures, DivergedRunsHaveNoFigures) {
 // Round ones and ones with edges, whatever steps are made of.
 TEST(ValidationFigures, BodiesThatAccelerateFeelTheirAddedMassByAnyMethod) {
     auto wrong = [](const std::string& name, Formulation formulation, Integrator integrator) {
-        return runAt(caseNamed(name), 5, [&](Scene& s) {
-                   s.simulation.formulation = formulation, s.time.integrator = integrator;
-               }).metrics[0].value;
+        return runAt(caseNamed(name), 5,
+                     [&](Scene& s) {
+                         s.simulation.formulation = formulation, s.time.integrator = integrator;
+                     })
+            .metrics[0]
+            .value;
     };
     using enum Formulation;
     for (const std::string name : {"added_mass", "added_mass_square"})

@@ -1,6 +1,7 @@
 // What the front end asks of a simulation.
 #include "sim/simulation.h"
 
+#include "scene/particles.h"
 #include "sim/make_simulation.h"
 
 #include <gtest/gtest.h>
@@ -55,6 +56,26 @@ TEST(Vertices, RangeLeavesOutliersOut) {
     const Range plain = simulation->writeVertices({vertices.data()}, ColorBy::Plain, 0);
     EXPECT_EQ(plain.min, 0);
     EXPECT_EQ(plain.max, 0);
+}
+
+// In whatever units a scene is: only sound bounds the step, unless a knob does.
+TEST(Steps, AreAsLongAsSoundLetsThemBe) {
+    for (const TimeMode mode : {TimeMode::Cfl, TimeMode::Local})
+        for (float asked : {0.0f, 0.01f}) {
+            Scene scene = calm();
+            scene.simulation.formulation = Formulation::DeltaSph;
+            scene.fluid.soundSpeed = 0.01f, scene.fluid.bodies = {Body{}};
+            scene.fluid.bodies[0].min = {0.2f, 0.2f, 0.2f};
+            scene.fluid.bodies[0].max = {0.6f, 0.6f, 0.6f};
+            scene.time.mode = mode, scene.time.maxStep = asked;
+            const auto simulation = makeSimdSimulation(scene, placeParticles(scene), 2);
+            simulation->step(2);
+            const double sound = scene.time.cfl * supportRadius(scene) / 2 / scene.fluid.soundSpeed;
+            const double longest = simulation->measure().longestStep;
+            EXPECT_GT(sound, 2);
+            EXPECT_LE(longest, asked > 0 ? 0.010001 : 3 * sound);
+            EXPECT_GE(longest, asked > 0 ? 0.0099 : 0.9 * sound);
+        }
 }
 
 TEST(Measurement, MomentaAreSumsOverTheParticles) {
