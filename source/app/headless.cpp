@@ -351,7 +351,7 @@ private:
             keepLastGood();
         if (!output.particles.empty() && trouble_.empty())
             saveParticles(output.particles, simulation_->particles(),
-                          massesToSave(scene_, *simulation_));
+                          massesToSave(scene_, *simulation_), fluidsToSave(scene_, *simulation_));
         if (!output.screenshot.empty()) pictures_->save(*simulation_, scene_, output.screenshot);
         if (!quiet_)
             summarise();

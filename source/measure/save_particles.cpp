@@ -7,9 +7,9 @@
 namespace spindrift {
 
 void saveParticles(const std::string& path, const std::vector<Particle>& particles,
-                   const std::vector<double>& masses) {
+                   const std::vector<double>& masses, const std::vector<double>& fluids) {
     ParticleTable table;
-    table.masses = masses;
+    table.masses = masses, table.fluids = fluids;
     for (const Particle& p : particles) {
         table.positions.push_back(p.position), table.velocities.push_back(p.velocity);
         table.densities.push_back(p.density), table.pressures.push_back(p.pressure);
@@ -27,6 +27,12 @@ std::vector<double> massesToSave(const Scene& scene, Simulation& simulation) {
     for (size_t i = 0; i < bodies.size(); ++i)
         masses[i] = volume * restDensity(scene, scene.fluid.bodies[bodies[i]]);
     return masses;
+}
+
+std::vector<double> fluidsToSave(const Scene& scene, Simulation& simulation) {
+    if (hasOwnVolume(scene)) return {};
+    const std::vector<uint16_t> bodies = simulation.state().particles.bodies;
+    return {bodies.begin(), bodies.end()};
 }
 
 }  // namespace spindrift

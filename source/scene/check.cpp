@@ -286,6 +286,17 @@ void requireInside(const Scene& scene, const std::string& body, const std::strin
         }
 }
 
+// The fluids that particles name.
+void checkFluids(const Scene& scene, const std::string& body, const std::string& file,
+                 const ParticleTable& table) {
+    const size_t fluids = scene.fluid.bodies.size();
+    for (size_t i = 0; i < table.fluids.size(); ++i)
+        if (table.fluids[i] >= double(fluids))
+            refuse(body, fmt::format("{}: {}: fluid = {:g}, and fluid.bodies has the entries 0 to "
+                                     "{}; add one with that fluid's rest_density, or mend the file",
+                                     file, table.nameOf(i), table.fluids[i], fluids - 1));
+}
+
 // Densities whose unit is another one are a thousand times too small or too large.
 void checkDensities(const std::string& body, const std::string& file, const ParticleTable& table,
                     double rest) {
@@ -384,6 +395,7 @@ void checkParticleFiles(const Scene& scene) {
         const ParticleTable& table = tables.emplace_back(b, readParticles(body.path)).second;
         const std::string path = bodyPath(b) + ".path";
         requireInside(scene, path, body.path, table);
+        checkFluids(scene, path, body.path, table);
         checkDensities(path, body.path, table, restDensity(scene, body));
     }
     checkDoubled(scene, tables);

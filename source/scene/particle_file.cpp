@@ -23,9 +23,9 @@
 namespace spindrift {
 namespace {
 
-constexpr const char* Names[] = {"x", "y", "z", "vx", "vy", "vz", "rho", "p", "mass"};
-constexpr const char* Units[] = {"m", "m", "m", "m/s", "m/s", "m/s", "kg/m³", "Pa", "kg"};
-constexpr size_t Columns = std::size(Names), Rho = 6, P = 7, M = 8;
+constexpr const char* Names[] = {"x", "y", "z", "vx", "vy", "vz", "rho", "p", "mass", "fluid"};
+constexpr const char* Units[] = {"m", "m", "m", "m/s", "m/s", "m/s", "kg/m³", "Pa", "kg", ""};
+constexpr size_t Columns = std::size(Names), Rho = 6, P = 7, M = 8, F = 9;
 using Values =
     std::array<std::vector<double>, Columns>;  // of each column, empty where there is none
 
@@ -39,7 +39,7 @@ ParticleTable tableOf(const std::string& path, Values v, std::vector<int> lines)
     for (size_t k = 0; k < 3; ++k)
         if (v[k].empty())
             refuse(path, fmt::format("has no particles, or no column {}; it needs x, y, z, and may "
-                                     "have vx, vy, vz, rho, p, mass",
+                                     "have vx, vy, vz, rho, p, mass, fluid",
                                      Names[k]));
     for (size_t k = 1; k < Columns; ++k)
         if (!v[k].empty() && v[k].size() != v[0].size())
@@ -47,6 +47,10 @@ ParticleTable tableOf(const std::string& path, Values v, std::vector<int> lines)
                    fmt::format("{} values of {}, but {} of x", v[k].size(), Names[k], v[0].size()));
     if (v[3].empty() != v[4].empty() || v[4].empty() != v[5].empty())
         refuse(path, "has some of the columns vx, vy, vz; give all three or none");
+    if (!v[M].empty() && !v[F].empty())
+        refuse(path,
+               "has both mass and fluid; leave mass out: each particle has spacing^3 of its "
+               "fluid then");
     ParticleTable table;
     table.lines = std::move(lines);
     std::vector<std::string> complaints;
@@ -62,10 +66,15 @@ ParticleTable tableOf(const std::string& path, Values v, std::vector<int> lines)
         if (!v[M].empty() && v[M][i] <= 0)
             complaints.push_back(
                 fmt::format("{}: mass = {:g} kg is not above 0", table.nameOf(i), v[M][i]));
+        if (!v[F].empty() && !(v[F][i] >= 0 && v[F][i] == std::floor(v[F][i])))
+            complaints.push_back(
+                fmt::format("{}: fluid = {:g} is no number of an entry of "
+                            "fluid.bodies, from 0 on",
+                            table.nameOf(i), v[F][i]));
     }
     refuseAny(path, complaints);
     table.densities = std::move(v[Rho]), table.pressures = std::move(v[P]);
-    table.masses = std::move(v[M]);
+    table.masses = std::move(v[M]), table.fluids = std::move(v[F]);
     return table;
 }
 
@@ -172,6 +181,7 @@ std::vector<double> columnOf(const ParticleTable& table, size_t k) {
     if (k == Rho) return table.densities;
     if (k == P) return table.pressures;
     if (k == M) return table.masses;
+    if (k == F) return table.fluids;
     std::vector<double> values;
     for (const Vec3d& v : k < 3 ? table.positions : table.velocities)
         values.push_back(v[int(k % 3)]);
@@ -183,7 +193,9 @@ bool writeCsv(const std::string& path, const std::vector<std::vector<double>>& v
     if (!file) return false;
     std::string text;
     for (size_t k = 0; k < Columns; ++k)
-        if (!values[k].empty()) text += fmt::format("{}{} [{}]", k ? "," : "", Names[k], Units[k]);
+        if (!values[k].empty())
+            text += fmt::format("{}{}{}", k ? "," : "", Names[k],
+                                *Units[k] ? fmt::format(" [{}]", Units[k]) : "");
     text += '\n';
     bool written = true;
     for (size_t i = 0; i < values[0].size() && written; ++i) {

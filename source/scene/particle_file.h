@@ -9,18 +9,19 @@
 
 namespace spindrift {
 
-// One entry a particle, SI units, world coordinates. Densities, pressures and masses are empty
-// where the table has none, a density of 0 is unknown.
+// One entry a particle, SI units, world coordinates. Densities, pressures, masses and fluids (the
+// entry of fluid.bodies whose fluid it is of, from 0 on) are empty where the table has none, a
+// density of 0 is unknown.
 struct ParticleTable {
     std::vector<Vec3d> positions, velocities;
-    std::vector<double> densities, pressures, masses;
+    std::vector<double> densities, pressures, masses, fluids;
     std::vector<int> lines;  // of a CSV file, from 1 on; empty for HDF5
     // "line 7", or "particle 7" of an HDF5 file.
     std::string nameOf(size_t particle) const;
 };
 
-// CSV: a header line names the columns x, y, z, vx, vy, vz, rho, p, mass in any order, the last
-// three may be missing, and the velocities all three, which are 0 then (core/table.h). HDF5:
+// CSV: a header line names the columns x, y, z, vx, vy, vz, rho, p, mass, fluid in any order, the
+// last four may be missing, and the velocities all three, which are 0 then (core/table.h). HDF5:
 // datasets of one dimension with these names, others are none of our business. Throws Error
 // (Scene), one line that names the file and its first bad lines: what is no finite number, too many
 // or too few values, a density below 0, a mass that is not above it.

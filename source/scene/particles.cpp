@@ -66,8 +66,10 @@ void placeBody(const Scene& scene, const std::vector<Lattice>& lattices, size_t 
             }
 }
 
-// Appends the particles of a file as they are, in two dimensions in the layer of the others.
-void placeFile(const Scene& scene, const Body& body, Placement& out) {
+// Appends the particles of a file as they are, each of its own body's fluid or of the one that it
+// names, in two dimensions in the layer of the others.
+void placeFile(const Scene& scene, size_t index, Placement& out) {
+    const Body& body = scene.fluid.bodies[index];
     const ParticleTable table = readParticles(body.path);
     const Vec3d origin = toDouble(scene.domain.min);
     for (size_t i = 0; i < table.positions.size(); ++i) {
@@ -76,6 +78,7 @@ void placeFile(const Scene& scene, const Body& body, Placement& out) {
         out.positions.push_back(toFloat(place));
         out.velocities.push_back(toFloat(velocity));
         out.pressures.push_back(table.pressures.empty() ? 0.0f : float(table.pressures[i]));
+        out.bodies.push_back(uint16_t(table.fluids.empty() ? double(index) : table.fluids[i]));
     }
     if (table.densities.empty()) return;
     out.densities.resize(out.positions.size() - table.densities.size());
@@ -211,9 +214,7 @@ Placement placeParticles(const Scene& scene) {
         out.bodies.push_back(uint16_t(body));
     }
     for (size_t b = 0; b < scene.fluid.bodies.size(); ++b) {
-        if (scene.fluid.bodies[b].shape == Shape::File)
-            placeFile(scene, scene.fluid.bodies[b], out);
-        out.bodies.resize(out.positions.size(), uint16_t(b));
+        if (scene.fluid.bodies[b].shape == Shape::File) placeFile(scene, b, out);
     }
     if (!isMultiFluid(scene)) out.bodies = {};
     if (!out.densities.empty()) out.densities.resize(out.positions.size());

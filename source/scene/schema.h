@@ -121,8 +121,10 @@ void visitMember(B& b, const std::string& at, Visitor&& visit) {
         visit(at + ".path", b.path,
               Knob{"", 0, 0,
                    "CSV with a header, or HDF5: x, y, z, and if there are any vx, vy, vz, rho, p, "
-                   "mass; all of them are taken, also inside "
-                   "other bodies. Without mass each has that of spacing^3. As output.particles "
+                   "mass, fluid; all of them are taken, also inside "
+                   "other bodies. fluid: the entry of fluid.bodies, from 0 on, whose rest_density "
+                   "and viscosity a particle has. Without mass each has that of spacing^3. As "
+                   "output.particles "
                    "writes it; a relative path starts at the scene file",
                    Restart});
         visit(at + ".mass", b.mass,

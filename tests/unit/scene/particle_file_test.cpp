@@ -6,6 +6,7 @@
 #include "measure/save_particles.h"
 #include "scene/check.h"
 #include "scene/json.h"
+#include "scene/particles.h"
 #include "sim/simulation.h"
 
 #include <fmt/format.h>
@@ -90,6 +91,8 @@ TEST_F(ParticleFiles, WhatIsWrittenIsReadBitByBit) {
         t.densities.push_back(1000 + s), t.pressures.push_back(-1e5 * s);
         t.masses.push_back(0.008 + s / 1000);
     }
+    std::vector<double> fluids;
+    for (int i = 0; i < 5000; ++i) fluids.push_back(i % 7);
     for (const char* name : {"t.csv", "t.h5"}) {
         const std::string path = (folder / name).string();
         ASSERT_TRUE(writeParticles(path, path.ends_with(".h5"), t));
@@ -100,9 +103,49 @@ TEST_F(ParticleFiles, WhatIsWrittenIsReadBitByBit) {
         EXPECT_EQ(again.pressures, t.pressures) << name;
         EXPECT_EQ(again.masses, t.masses) << name;
         EXPECT_EQ(countParticlesIn(path), 5000) << name;
+        ParticleTable named = t;
+        named.masses.clear(), named.fluids = fluids;
+        ASSERT_TRUE(writeParticles(path, path.ends_with(".h5"), named));
+        EXPECT_EQ(readParticles(path).fluids, fluids) << name;
     }
     EXPECT_FALSE(writeParticles("/nowhere/t.csv", false, t));
     EXPECT_FALSE(writeParticles("/nowhere/t.h5", true, t));
+}
+
+// A file's particles are of their own body's fluid, or of the entry that they name: also a run's
+// that goes on from its own file.
+TEST_F(ParticleFiles, ParticlesNameTheirFluid) {
+    std::string text = "x,y,z,fluid\n";
+    for (int i = 0; i < 1000; ++i)
+        text += fmt::format("{},{},{},{}\n", -1 + (i % 10 + 0.5) * 0.1,
+                            2 + (i / 10 % 10 + 0.5) * 0.1, 3 + (i / 100 + 0.5) * 0.1, i % 3);
+    Scene scene = sceneOf(write(text, "f.csv"), Formulation::DeltaSph);
+    for (float rho : {800.0f, 500.0f}) {
+        Body block;
+        block.min = scene.domain.min, block.max = block.min + Vec3{0.1f, 0.1f, 0.1f};
+        block.restDensity = rho;
+        scene.fluid.bodies.push_back(block);
+    }
+    const Placement p = placeParticles(scene);
+    std::vector<int> count(3);
+    for (size_t i = p.positions.size() - 1000; i < p.positions.size(); ++i) {
+        EXPECT_EQ(p.bodies[i], (i - (p.positions.size() - 1000)) % 3);
+        ++count[p.bodies[i]];
+    }
+    EXPECT_EQ(count, (std::vector<int>{334, 333, 333}));
+    auto refused = [&](const std::string& line, const std::string& words) {
+        try {
+            scene.fluid.bodies[0].path = write(line, "g.csv");
+            checkScene(scene);
+            ADD_FAILURE() << words;
+        } catch (const Error& e) {
+            EXPECT_NE(std::string(e.what()).find(words), std::string::npos) << e.what();
+        }
+    };
+    refused("x,y,z,fluid\n0,2,3,3\n", "has the entries 0 to 2");
+    refused("x,y,z,fluid\n0,2,3,0.5\n", "no number of an entry");
+    refused("x,y,z,fluid\n0,2,3,-1\n", "no number of an entry");
+    refused("x,y,z,fluid,mass\n0,2,3,0,1\n", "both mass and fluid");
 }
 
 TEST_F(ParticleFiles, AMassIsThatOfAllParticlesOfTheScene) {
