@@ -127,8 +127,8 @@ void runHeave(const Scene& scene, ValidationRun& run, const std::string& data) {
                  {{"linear theory", at, height, Curve::Line}, ours}};
     run.metrics = {
         {"period, from low to low", "%", 100 * ((low[1] - low[0]) / (known[1] - known[0]) - 1),
-         targetAt(run.resolution, 10, 3.0)},
-        {"first low", "%", 100 * (low[0] / known[0] - 1), targetAt(run.resolution, 10, 3.0)},
+         targetAt(run.resolution, 5, 3.0)},
+        {"first low", "%", 100 * (low[0] / known[0] - 1), targetAt(run.resolution, 5, 3.0)},
         {"rms of the height", "%", 100 * std::sqrt(square / double(at.size())), {}}};
 }
 

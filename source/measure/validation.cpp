@@ -254,7 +254,7 @@ std::vector<ValidationCase> validationCases(const std::string& data) {
          "Ursell 1949, Maskell and Ursell 1970",
          "a / dx",
          {5, 10, 20},
-         {},
+         {5},
          perRadius,
          [data](const Scene& s, ValidationRun& r) { runHeave(s, r, data); }},
         {"settling",
