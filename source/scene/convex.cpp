@@ -77,10 +77,8 @@ Convex::Nearest Convex::nearest(Vec3d p) const {
         if (far - radius > best.distance) best = {far - radius, away};
     }
     if (!mesh) return best;
-    // Far from its box nobody asks for more.
     int triangle = -1;
-    const Vec3d half{offset[0], offset[2], offset[4]};
-    return best.distance > 0.1 * length(half) ? best : nearestOfMesh(p, triangle);
+    return nearestOfMesh(p, triangle);
 }
 
 Convex::Nearest Convex::nearestOfMesh(Vec3d p, int& triangle) const {

@@ -146,9 +146,17 @@ Slants::Slants(const Scene& scene, const std::vector<Lattice>& lattices) : scene
             solids_.push_back(convexOf(solid, scene.simulation.dimensions));
 }
 
+// Where nothing is packed, nor seen by what is, the distance from a mesh's box will do.
 double Slants::distance(Vec3d p) const {
+    const double enough = 3 * reach();
     double nearest = 1e30;
-    for (const Convex& s : solids_) nearest = std::min(nearest, distanceFrom(scene_, s, p));
+    for (const Convex& s : solids_) {
+        const Vec3d x = p + toDouble(scene_.domain.min) - s.middle;
+        double beyond = -1e300;
+        for (int k = 0; k < s.planes; ++k)
+            beyond = std::max(beyond, dot(s.normal[k], x) - s.offset[k]);
+        nearest = std::min(nearest, beyond > enough ? beyond : s.nearest(x).distance);
+    }
     return nearest;
 }
 

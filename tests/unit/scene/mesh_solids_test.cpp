@@ -585,6 +585,55 @@ TEST(MeshSolids, KeepFluidOut) {
         }
 }
 
+// Also where only its box is near: in the notch of an L, in a ring, between boxes.
+TEST(MeshSolids, AreAsFarAsTheirSurface) {
+    std::mt19937 random(6);
+    for (const auto& [name, surface] : solids()) {
+        SCOPED_TRACE(name);
+        Solid solid;
+        solid.shape = Shape::Mesh, solid.scale = 0.5f, solid.offset = {0.1, -0.2, 0.3};
+        solid.path = fileOf("far.obj", surface.text());
+        const Convex shape = convexOf(solid, 3);
+        const auto mesh = readMesh(solid.path);
+        for (int k = 0; k < 500; ++k) {
+            Vec3d p;
+            for (int c = 0; c < 3; ++c) p[c] = 2 * (random() / 4294967296.0) - 1;
+            ASSERT_NEAR(shape.nearest(p).distance,
+                        0.5 * mesh->nearest(2.0 * (p + shape.middle - solid.offset)).distance,
+                        1e-6);
+        }
+    }
+}
+
+// Whatever their shape, and wherever the lattice meets them: fluid that is packed stays beside
+// them, and none is squeezed.
+TEST(MeshSolids, HaveFluidPackedBesideThem) {
+    for (const auto& [name, surface] : solids())
+        for (const double over : {0.0, 0.5}) {
+            SCOPED_TRACE(testing::Message() << name << ", " << over);
+            const double dx = 0.04;
+            Scene scene;
+            scene.simulation.spacing = float(dx);
+            scene.domain.max = {1.2f, 0.96f, 0.96f};
+            scene.fluid.bodies = {Body{{.max = scene.domain.max}}};
+            Solid solid;
+            solid.shape = Shape::Mesh, solid.path = fileOf("packed.obj", surface.text());
+            solid.offset = Vec3d{0.1, 0.1, 0.1} + (over * dx) * Vec3d{1, 0.7, 0.4};
+            scene.solids = {solid};
+            const Convex shape = convexOf(solid, 3);
+            const std::vector<Vec3> at = placeParticles(scene).positions;
+            for (const Vec3& x : at) {
+                const Vec3d p = toDouble(x);
+                double off = 0;  // a lattice that fits to the box
+                for (int k = 0; k < 3; ++k)
+                    off = std::max(off, std::abs(std::remainder(p[k] / dx - 0.5, 1)));
+                if (off > 0.01) { ASSERT_LT(shape.nearest(p - shape.middle).distance, 3.5 * dx); }
+            }
+            const auto simulation = makeSimulation(scene);
+            EXPECT_LT(simulation->measure().maxDensityError, 0.05);
+        }
+}
+
 // Bodies of fluid: as full as their volume, and not beyond their surface.
 TEST(MeshSolids, HoldFluid) {
     const double dx = 0.025;
