@@ -303,6 +303,16 @@ CLI::App* addStress(CLI::App& app, StressOptions& options) {
                       "also what takes many minutes, and maps of what is stable");
     command->add_option("--out", options.out, "folder for stability.json and stability.md")
         ->type_name("FOLDER");
+    command
+        ->add_option("--handled", options.handled,
+                     "instead: a hand drags and stirs this scene at random, as the mouse would; "
+                     "may be repeated, and --seed says how")
+        ->type_name("SCENE")
+        ->allow_extra_args(false);
+    command->add_option("--seconds", options.seconds, "how long the hand does")
+        ->type_name("S")
+        ->check(CLI::Range(0.1, 1e6));
+    addSetOption(*command, options.choices);
     return command;
 }
 

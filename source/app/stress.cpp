@@ -132,9 +132,26 @@ void maps(const StressOptions& options, Report& report) {
         ".\n";
 }
 
+int handleScenes(const StressOptions& options) {
+    bool sound = true;
+    fmt::print("{:28} {:8} {:>8} {:>8} {:>9} {:>9} {:>8} {:>7}\n", "handled at random", "verdict",
+               "fluid", "steps", "time", "fastest", "density", "retries");
+    for (const std::string& name : options.handled) {
+        const Scene scene = chooseScene(name, options.choices);
+        const StressResult r = handle(scene, options.seed, options.seconds);
+        fmt::print("{:28} {:8} {:>8} {:>8} {:>7.3g} s {:>5.3g} m/s {:>6.2f} % {:>7}  {}\n",
+                   scene.name, VerdictNames[int(r.verdict)], r.particles, r.steps, r.time, r.speed,
+                   100 * r.density, r.retries, r.what);
+        std::fflush(stdout);
+        sound = sound && r.verdict == Verdict::Sound;
+    }
+    return int(sound ? Exit::Ok : Exit::Different);
+}
+
 }  // namespace
 
 int stress(const StressOptions& options) {
+    if (!options.handled.empty()) return handleScenes(options);
     if (!options.out.empty()) requireFolder(options.out);
     Report report;
     torture(options, report);

@@ -32,10 +32,16 @@ struct StressResult {
     double energyGain =
         0;  // largest gain of kinetic, potential and internal energy / (what of it can move at the
             // start: kinetic, internal, M g H, and M (c / 50)^2 / 2)
-    double density = 0;  // largest rho / rho0 - 1
+    double density = 0;          // largest rho / rho0 - 1
+    double time = 0, speed = 0;  // of handle(): s simulated; the fastest particle, m/s
 };
 
 StressResult stress(const StressCase&);
+
+// For so many seconds of the clock a hand drags the scene's solids and stirs its fluid at random,
+// 60 times a second, between which the run does at most ten steps. Sound: nothing of what
+// handled.h looks for.
+StressResult handle(const Scene&, uint64_t seed, double seconds);
 
 // Impacts, jets, sheets, single and coinciding particles, tilted gravity and so on, for each
 // formulation that can do them. `full` adds those that take minutes: a million steps of a still
