@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <cctype>
 #include <filesystem>
 #include <utility>
 
@@ -40,7 +41,11 @@ std::vector<std::string> shippedScenes() {
 
 std::string titleOf(const std::string& file) {
     try {
-        return loadScene(file).name;
+        std::string name = loadScene(file).name;
+        if (name.find_first_not_of("0123456789") == std::string::npos)
+            name = "original, file " + name;
+        name[0] = char(std::toupper(static_cast<unsigned char>(name[0])));
+        return name;
     } catch (const Error&) { return ""; }
 }
 

@@ -13,7 +13,8 @@ namespace spindrift {
 
 // Names of the scenes in configs/, as findScene takes them.
 std::vector<std::string> shippedScenes();
-// What the scene in a file calls itself; "" when it can't be read.
+// What a list calls the scene in a file: its name, with a capital. Those of the original program
+// have numbers for names. "" when it can't be read.
 std::string titleOf(const std::string& file);
 // The folder that the shipped scenes are in.
 std::string configsFolder();

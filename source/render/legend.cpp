@@ -81,13 +81,13 @@ Rgba opaque(const std::array<uint8_t, 3>& c) {
     return {c[0] / 255.0f, c[1] / 255.0f, c[2] / 255.0f};
 }
 
-// The box, so many units high, its title, and a note where there is room. At the lower left: the
-// tank's near corner stands at the lower right of the first view.
+// The box, so many units high, its title, and the first of the notes for which there is room. At
+// the lower left: the tank's near corner stands at the lower right of the first view.
 struct Box {
     float unit, x, top, bar;
 };
 Box drawBox(Overlay& overlay, int width, int height, float units, const LegendText& text,
-            const std::string& note) {
+            const std::vector<std::string>& notes) {
     const float unit = unitOf(width, height);
     overlay.textSize(14 * unit);
     const float pad = 14 * unit, bar = std::min(270 * unit, 0.6f * float(width)),
@@ -99,8 +99,11 @@ Box drawBox(Overlay& overlay, int width, int height, float units, const LegendTe
     overlay.text(x, titleLine, text.title, bright);
     overlay.text(x + overlay.textWidth(text.title + " "), titleLine, text.unit, dim);
     const float titleWidth = overlay.textWidth(text.title + " " + text.unit + " ");
-    if (titleWidth + overlay.textWidth(note) <= bar)
+    for (const std::string& note : notes) {
+        if (titleWidth + overlay.textWidth(note) > bar) continue;
         overlay.text(x + bar - overlay.textWidth(note), titleLine, note, dim);
+        break;
+    }
     return {unit, x, top, bar};
 }
 
@@ -108,8 +111,9 @@ Box drawBox(Overlay& overlay, int width, int height, float units, const LegendTe
 
 void drawLegend(Overlay& overlay, int width, int height, const LegendText& text, ColorMap map,
                 float min, float max) {
-    const auto [unit, x, top, bar] = drawBox(overlay, width, height, 80, text,
-                                             std::string(colorMapName(map)) + ", " + text.note);
+    const std::vector<std::string> notes{std::string(colorMapName(map)) + ", " + text.note,
+                                         text.note};
+    const auto [unit, x, top, bar] = drawBox(overlay, width, height, 80, text, notes);
     const ColorTable table = colorTable(map);
     const float barTop = std::round(top + 34 * unit), thick = 12 * unit;
     for (size_t i = 0; i < table.size(); ++i) {
@@ -132,7 +136,7 @@ void drawLegend(Overlay& overlay, int width, int height, const LegendText& text,
     constexpr size_t most = 12;
     const size_t shown = std::min(swatches.size(), most);
     const auto [unit, x, top, bar] =
-        drawBox(overlay, width, height, 36 + 22 * float(shown), text, text.note);
+        drawBox(overlay, width, height, 36 + 22 * float(shown), text, {text.note});
     for (size_t i = 0; i < shown; ++i) {
         const float line = top + (46 + 22 * float(i)) * unit;
         overlay.rectangle(x, std::round(line - 11 * unit), 13 * unit, 13 * unit,

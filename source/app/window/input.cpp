@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace spindrift {
 
@@ -178,6 +179,21 @@ void pressKey(Ui& ui, SDL_Keycode key) {
         default:
             break;
     }
+}
+
+std::optional<SDL_Event> Taps::beginPicture() {
+    pressed_.clear();
+    return std::exchange(kept_, {});
+}
+
+bool Taps::keeps(const SDL_Event& event) {
+    if (event.type != SDL_KEYDOWN && event.type != SDL_KEYUP) return false;
+    const SDL_Keysym key = event.key.keysym;
+    const bool isLetter = key.sym >= ' ' && key.sym < SDLK_DELETE && !(key.mod & KMOD_CTRL);
+    if (event.type == SDL_KEYDOWN && !isLetter) pressed_.insert(key.sym);
+    if (event.type == SDL_KEYDOWN || !pressed_.contains(key.sym)) return false;
+    kept_ = event;
+    return true;
 }
 
 void handleEvent(Ui& ui, const SDL_Event& event) {

@@ -199,9 +199,13 @@ private:
 
     void handleEvents() {
         SDL_Event event;
-        bool any = idle() ? SDL_WaitEventTimeout(&event, 200) : SDL_PollEvent(&event);
+        bool any = true;
+        if (std::optional<SDL_Event> kept = taps_.beginPicture())
+            event = *kept;
+        else
+            any = idle() ? SDL_WaitEventTimeout(&event, 200) : SDL_PollEvent(&event);
         const bool came = any;
-        for (; any; any = SDL_PollEvent(&event)) {
+        for (; any && !taps_.keeps(event); any = SDL_PollEvent(&event)) {
             ImGui_ImplSDL2_ProcessEvent(&event);
             handleEvent(ui_, event);
         }
@@ -357,6 +361,7 @@ private:
     std::array<int, 2> windowed_{};  // size before full screen
     double pictureEnd_ = 0;
     std::string notes_;  // on the screen
+    Taps taps_;
     double frameBegin_ = 0, nextTimes_ = 0, stirTime_ = 0;
 };
 

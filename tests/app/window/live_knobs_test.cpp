@@ -137,5 +137,40 @@ TEST(Curves, AreSavedWithUnits) {
         std::string::npos);
 }
 
+SDL_Event keyEvent(Uint32 type, SDL_Keycode key, Uint16 mod = 0) {
+    SDL_Event event{};
+    event.type = type, event.key.keysym.sym = key, event.key.keysym.mod = mod;
+    return event;
+}
+
+// However slow pictures are, each tap of a key is down in one of them, in its order; letters pass.
+TEST(Taps, AreSeenInAPicture) {
+    std::vector<SDL_Event> queue;
+    const std::pair<SDL_Keycode, Uint16> typed[] = {
+        {'5', 0}, {SDLK_BACKSPACE, 0}, {SDLK_BACKSPACE, 0},
+        {'7', 0}, {'z', KMOD_LCTRL},   {SDLK_RETURN, 0}};
+    for (const auto& [key, mod] : typed)
+        queue.push_back(keyEvent(SDL_KEYDOWN, key, mod)),
+            queue.push_back(keyEvent(SDL_KEYUP, key, mod));
+    Taps taps;
+    std::vector<std::vector<SDL_Keycode>> pictures;  // what was down in each
+    for (size_t next = 0; next < queue.size();) {
+        std::set<SDL_Keycode> down;
+        if (const auto kept = taps.beginPicture()) {
+            EXPECT_EQ(kept->type, Uint32(SDL_KEYUP));
+            ++next;
+        }
+        for (; next < queue.size() && !taps.keeps(queue[next]); ++next) {
+            if (queue[next].type == SDL_KEYDOWN) down.insert(queue[next].key.keysym.sym);
+            if (queue[next].type == SDL_KEYUP) down.erase(queue[next].key.keysym.sym);
+        }
+        pictures.push_back({down.begin(), down.end()});
+        ASSERT_LT(pictures.size(), 20u);
+    }
+    const std::vector<std::vector<SDL_Keycode>> expected{
+        {SDLK_BACKSPACE}, {SDLK_BACKSPACE}, {'z'}, {SDLK_RETURN}, {}};
+    EXPECT_EQ(pictures, expected);
+}
+
 }  // namespace
 }  // namespace spindrift
