@@ -152,6 +152,7 @@ public:
     int sortByCell(int n, const int* key, int rows, int rowLength, int pad, int* cellStart,
                    Buffer<int, Cuda>& order);
 
+    static constexpr bool hostReadable = false;
     // Steps are recorded as CUDA graphs. `f` launches work and reads nothing; it is not run, it is
     // noted and then run.
     static constexpr bool recordsSteps = true;

@@ -46,7 +46,7 @@ public:
     template <class T> void upload(T* to, const T* from, size_t n) {
         std::copy(from, from + n, to);
     }
-    template <class T> void download(T* to, const T* from, size_t n) {
+    template <class T> void download(T* to, const T* from, size_t n) const {
         std::copy(from, from + n, to);
     }
 
@@ -114,9 +114,12 @@ public:
     int sortByCell(int n, const int* key, int rows, int rowLength, int pad, int* cellStart,
                    Buffer<int, Omp>& order);
 
+    static constexpr bool hostReadable = true;  // its memory is the host's
     // Steps are run pass by pass, and each pass is measured.
     static constexpr bool recordsSteps = false;
-    struct Recording {};
+    struct Recording {
+        void outdate() {}
+    };
     template <class F> void timed(PassTime* time, const F& f) {
         time->ms += milliseconds(f);
         ++time->runs;

@@ -1,5 +1,6 @@
 #include "measure/health.h"
 
+#include "scene/formulation.h"
 #include "scene/particles.h"
 
 #include <fmt/format.h>
@@ -66,7 +67,7 @@ Trouble troubleOf(const Scene& scene, const Measurement& m, double squeezed) {
         return {fmt::format("a particle at {:.3g} m/s, {:g} times the speed of sound or more",
                             m.maxSpeed, MachLimit),
                 speedOf};
-    if (scene.simulation.formulation != Formulation::Classic && m.maxDensityError > squeezed)
+    if (!factsOf(scene).isHistorical && m.maxDensityError > squeezed)
         return {fmt::format("a particle squeezed to {:.3g} times the rest density",
                             1 + m.maxDensityError),
                 densityOf};
@@ -147,8 +148,7 @@ void HealthGuard::keep(RunState state) {
 // some.
 void HealthGuard::keepIfDue(const Measurement& m) {
     const bool calm = m.maxSpeed < mostSoundSpeed(scene_) &&
-                      (scene_.simulation.formulation == Formulation::Classic ||
-                       m.maxDensityError < squeezed_ / 2);
+                      (factsOf(scene_).isHistorical || m.maxDensityError < squeezed_ / 2);
     if (calm && m.steps >= lastGood().clock.steps + interval_ && m.time > troubleTime_)
         keep(simulation_.state());
 }

@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "measure/health.h"
 #include "scene/check.h"
+#include "scene/formulation.h"
 #include "scene/json.h"
 #include "scene/particles.h"
 
@@ -18,7 +19,7 @@ namespace {
 // What compressed fluid gives back, J: of p = k ((rho/rho0)^gamma - 1), where that is not cut off
 // at 0. The classic formulation's pressure has none.
 double internalEnergy(const Scene& scene, double sound, Simulation& simulation) {
-    if (scene.simulation.formulation == Formulation::Classic) return 0;
+    if (factsOf(scene).isHistorical) return 0;
     const int gamma =
         scene.fluid.equationOfState == EquationOfState::Linear ? 1 : scene.fluid.gamma;
     const std::vector<uint16_t> bodies = simulation.state().particles.bodies;

@@ -1,6 +1,7 @@
 #include "measure/validity.h"
 
 #include "scene/convex.h"
+#include "scene/formulation.h"
 #include "scene/sample_solid.h"
 #include "scene/thin_solid.h"
 
@@ -138,8 +139,7 @@ std::vector<std::string> remarksOn(const Scene& scene) {
             "simulation.support: {:.3g} spacings, and sums over so few neighbours miss by many per "
             "cent; raise it to {:g} or more{}",
             scene.simulation.support, FewestSpacings,
-            scene.simulation.formulation == Formulation::Classic ? ", in another formulation"
-                                                                 : ""));
+            factsOf(scene).isHistorical ? ", in another formulation" : ""));
     addBodies(scene, out);
     std::vector<Convex> shapes;
     for (const Solid& solid : scene.solids)
@@ -152,8 +152,7 @@ std::vector<std::string> remarksOn(const Scene& scene) {
     return out;
 }
 
-Validity::Validity(const Scene& scene)
-    : isClassic_(scene.simulation.formulation == Formulation::Classic) {
+Validity::Validity(const Scene& scene) : isClassic_(factsOf(scene).isHistorical) {
     for (std::string& text : remarksOn(scene)) remark(std::move(text), 0);
 }
 

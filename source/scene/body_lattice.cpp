@@ -2,6 +2,7 @@
 
 #include "scene/body_parts.h"
 #include "scene/convex.h"
+#include "scene/formulation.h"
 #include "scene/lattice.h"
 #include "scene/sample_solid.h"
 
@@ -49,7 +50,7 @@ Planes planesOf(const Scene& scene, const Body& body, int axis, double step) {
 // a spacing from the face can see. Classic: one.
 int64_t wallLayers(const Scene& scene, int axis) {
     if (scene.domain.periodic(axis) || flat(scene, axis)) return 0;
-    if (scene.simulation.formulation == Formulation::Classic) return 1;
+    if (factsOf(scene).isHistorical) return 1;
     return boundaryLayers(scene);
 }
 
@@ -61,7 +62,7 @@ Lattice wallLattice(const Scene& scene) {
     const Vec3d size = scene.domain.size(), step = wallStep(scene);
     const float R = supportRadius(scene);
     for (int k = 0; k < 3; ++k) {
-        if (scene.simulation.formulation == Formulation::Classic) {
+        if (factsOf(scene).isHistorical) {
             const float side = scene.domain.max[k] - scene.domain.min[k];
             lattice.n[k] = std::max<int64_t>(2, planes(2 * double(std::ceil(side / R))));
             lattice.step[k] = 0.999 * size[k] / double(lattice.n[k] - 1);

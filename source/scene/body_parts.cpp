@@ -1,6 +1,7 @@
 #include "scene/body_parts.h"
 
 #include "scene/convex.h"
+#include "scene/formulation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -100,7 +101,7 @@ bool coversAcross(const Scene& scene, const Form& solid, const Form& body, int a
 }
 
 bool isFitted(const Scene& scene) {
-    return scene.simulation.formulation != Formulation::Classic && scene.fluid.particleMass <= 0;
+    return !factsOf(scene).isHistorical && scene.fluid.particleMass <= 0;
 }
 
 std::vector<BodyPart> partsOf(const Scene& scene) {

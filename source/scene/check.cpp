@@ -5,6 +5,7 @@
 #include "scene/check_methods.h"
 #include "scene/check_bodies.h"
 #include "scene/convex.h"
+#include "scene/formulation.h"
 #include "scene/json.h"
 #include "scene/motion.h"
 #include "scene/particle_file.h"
@@ -98,7 +99,7 @@ void checkDomain(const Scene& scene) {
 // Shifting spreads particles evenly over all the space it finds, and the pressure's gradient does
 // not feel a surface.
 void checkFills(const Scene& scene, ParticleCount count) {
-    if (scene.simulation.formulation != Formulation::TransportVelocity) return;
+    if (!factsOf(scene).fillsSpace) return;
     const Vec3d size = toDouble(scene.domain.max) - toDouble(scene.domain.min);
     const double dx = scene.simulation.spacing,
                  depth = scene.simulation.dimensions == 2 ? dx : size.z;
@@ -116,20 +117,18 @@ void checkRareForces(const Scene& scene) {
     const Fluid& f = scene.fluid;
     const Formulation formulation = scene.simulation.formulation;
     const char* name = enumNames(Formulation())[size_t(formulation)];
-    if (formulation != Formulation::Wcsph && f.airDensity > 0)
+    if (!factsOf(scene).airResists && f.airDensity > 0)
         refuse("fluid.air_density",
                fmt::format("who is at the surface is known by summed densities, which {} does not "
                            "have; use wcsph, or 0",
                            name));
-    const bool alone =
-        formulation == Formulation::Classic || formulation == Formulation::TransportVelocity;
-    if (alone && (hasMixingForces(scene) || f.dissipation > 0))
+    if (!factsOf(scene).takesOthers && (hasMixingForces(scene) || f.dissipation > 0))
         refuse("fluid", fmt::format("velocity_transfer, buoyancy and dissipation are not of {}; "
                                     "use wcsph, delta_sph or delta_plus, or set "
                                     "them to 0",
                                     name));
     const bool several = isMultiFluid(scene);
-    if (several && formulation != Formulation::Wcsph && formulation != Formulation::DeltaSph)
+    if (several && !factsOf(scene).takesFluids)
         refuse("fluid.bodies", fmt::format("are of several fluids, which {} does not have; use "
                                            "wcsph or delta_sph, or leave rest_density and "
                                            "viscosity of the bodies out",
@@ -144,7 +143,7 @@ void checkRareForces(const Scene& scene) {
                                "fluid.rest_density, {} kg/m³; "
                                "bring them closer",
                                restDensity(scene, f.bodies[b]), f.restDensity));
-    if (f.surfaceTension > 0 && formulation != Formulation::DeltaPlus)
+    if (f.surfaceTension > 0 && !factsOf(scene).takesTension)
         refuse("fluid.surface_tension", fmt::format("needs particles that are kept evenly spread, "
                                                     "or surfaces tear themselves apart; {} does "
                                                     "not, use simulation.formulation delta_plus",
@@ -186,7 +185,7 @@ void checkMovingFace(const Scene& scene) {
                fmt::format("{} = {} m/s leads out of the face; a face slides along itself",
                            "xyz"[axis], walls.velocity[axis]));
     if (walls.kind != WallKind::Particles || largestViscosity(scene) <= 0 ||
-        scene.simulation.formulation == Formulation::Classic)
+        factsOf(scene).isHistorical)
         refuse("walls.moving_face",
                "nothing sticks to it; it needs walls.kind particles, a fluid.viscosity above 0, "
                "and any "
@@ -214,7 +213,7 @@ void checkSlip(const Scene& scene) {
     if (faces && walls.kind != WallKind::Particles)
         refuse("walls.slip",
                "walls that reflect have walls.friction; use walls.kind particles, or set it to 0");
-    if (faces && scene.simulation.formulation == Formulation::Classic)
+    if (faces && factsOf(scene).isHistorical)
         refuse("walls.slip", "the classic formulation's walls let all slip; set it to 0");
     const int face = int(walls.movingFace) - 1;
     if (face < 0) return;

@@ -1,6 +1,7 @@
 #include "scene/check_bodies.h"
 
 #include "scene/convex.h"
+#include "scene/formulation.h"
 #include "scene/motion.h"
 #include "scene/sample_object.h"
 #include "scene/sample_solid.h"
@@ -99,7 +100,7 @@ void checkFloating(const Scene& scene, size_t index, const std::string& path) {
     if (scene.time.mode == TimeMode::Local)
         refuse(path + ".density",
                "what floats needs the same step everywhere; set time.mode to cfl");
-    if (scene.simulation.formulation == Formulation::TransportVelocity)
+    if (factsOf(scene).fillsSpace)
         refuse(path + ".density",
                "transport_velocity fills all room that walls leave; use wcsph, delta_sph or "
                "delta_plus");
@@ -128,7 +129,7 @@ void checkFloating(const Scene& scene, size_t index, const std::string& path) {
 void checkSolid(const Scene& scene, size_t index) {
     const Solid& solid = scene.solids[index];
     const std::string path = fmt::format("solids[{}]", index);
-    if (scene.simulation.formulation == Formulation::Classic)
+    if (factsOf(scene).isHistorical)
         refuse(path, "the classic formulation has no solids; use wcsph");
     if (solid.shape == Shape::File)
         refuse(path + ".shape", "a file is for bodies of fluid; name another shape");
@@ -322,8 +323,7 @@ void checkObjects(const Scene& scene) {
         return;
     }
     checkApart(scene);
-    const Formulation f = scene.simulation.formulation;
-    if (f == Formulation::Classic || f == Formulation::TransportVelocity)
+    if (!factsOf(scene).takesOthers)
         refuse("objects",
                "need fluid that may leave room for them: simulation.formulation wcsph, delta_sph "
                "or delta_plus");

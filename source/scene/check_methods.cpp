@@ -1,6 +1,7 @@
 #include "scene/check_methods.h"
 
 #include "scene/check_bodies.h"
+#include "scene/formulation.h"
 #include "scene/schema.h"
 
 #include <algorithm>
@@ -48,7 +49,7 @@ void checkReflecting(const Scene& scene) {
                "walls that reflect, and carried densities with it; use "
                "wendland_c2, or walls.kind particles");
     // Walls without particles leave the fluid beside them a free surface.
-    if (formulation == Formulation::TransportVelocity)
+    if (factsOf(scene).fillsSpace)
         refuse("walls.kind",
                "transport_velocity has no free surfaces, and beside walls that "
                "reflect there is one; use particles, or simulation.formulation "
@@ -56,8 +57,7 @@ void checkReflecting(const Scene& scene) {
 }
 
 void checkViscosityForm(const Scene& scene) {
-    if (scene.simulation.formulation == Formulation::TransportVelocity &&
-        viscosityForm(scene) != ViscosityForm::Morris)
+    if (factsOf(scene).fillsSpace && viscosityForm(scene) != ViscosityForm::Morris)
         refuse("fluid.viscosity_form",
                "monaghan is without what transport_velocity corrects; use auto or morris");
 }
@@ -65,7 +65,7 @@ void checkViscosityForm(const Scene& scene) {
 void checkPressureForm(const Scene& scene) {
     const Formulation formulation = scene.simulation.formulation;
     if (scene.simulation.pressureForm == PressureForm::Squares) return;
-    if (formulation != Formulation::Wcsph)
+    if (!factsOf(scene).meansPressure)
         refuse("simulation.pressure_form",
                fmt::format("mean is one of wcsph; {} has its own, use squares",
                            enumNames(Formulation())[size_t(formulation)]));
@@ -76,16 +76,15 @@ void checkPressureForm(const Scene& scene) {
 }  // namespace
 
 void checkMethods(const Scene& scene) {
-    const Formulation formulation = scene.simulation.formulation;
     const Integrator integrator = scene.time.integrator;
-    if (formulation == Formulation::Classic) checkClassic(scene);
+    if (factsOf(scene).isHistorical) checkClassic(scene);
     checkReflecting(scene);
     checkPressureForm(scene);
     checkViscosityForm(scene);
     const auto floats = [](const Solid& s) { return s.floats(); };
     const bool several =
         isMultiFluid(scene) || std::any_of(scene.solids.begin(), scene.solids.end(), floats);
-    if (integrator == Integrator::Split && (formulation != Formulation::DeltaSph || several))
+    if (integrator == Integrator::Split && (!factsOf(scene).splits || several))
         refuse("time.integrator",
                "split is for delta_sph, one fluid, and nothing that floats; use "
                "symplectic_euler");

@@ -1,6 +1,7 @@
 #include "scene/pack.h"
 
 #include "scene/body_parts.h"
+#include "scene/formulation.h"
 #include "scene/lattice.h"
 #include "scene/particles.h"
 #include "scene/sample_solid.h"
@@ -272,7 +273,7 @@ void packBeside(const Scene& scene, const std::vector<Lattice>& lattices, const 
 void relaxPlaces(const Scene& scene, const std::vector<Lattice>& lattices, bool isCut,
                  std::vector<Place>& places) {
     Region region = regionOf(scene, fittedBodies(scene, lattices));
-    if (scene.simulation.formulation != Formulation::Classic) addBoundary(scene, region);
+    if (!factsOf(scene).isHistorical) addBoundary(scene, region);
     // Sharp edges have no boundary particles in their tips that would keep others out.
     region.out = [&scene, solids = solidsOf(scene)](Vec3d p) { return outOf(scene, solids, p); };
     const double dx = latticeStep(scene).x;

@@ -3,6 +3,7 @@
 #include "scene/body_lattice.h"
 #include "scene/body_parts.h"
 #include "scene/convex.h"
+#include "scene/formulation.h"
 #include "scene/lattice.h"
 #include "scene/motion.h"
 #include "scene/particle_file.h"
@@ -102,9 +103,7 @@ float particleMass(const Scene& scene) {
     return scene.simulation.dimensions == 2 ? area : area * dx;
 }
 
-bool carriesDensity(const Scene& scene) {
-    return scene.simulation.formulation == Formulation::DeltaSph || shiftsParticles(scene);
-}
+bool carriesDensity(const Scene& scene) { return factsOf(scene).carriesDensity; }
 
 namespace {
 
@@ -158,8 +157,7 @@ bool letsSlip(const Scene& scene) {
 
 ViscosityForm viscosityForm(const Scene& scene) {
     if (scene.fluid.viscosityForm != ViscosityForm::Auto) return scene.fluid.viscosityForm;
-    return scene.simulation.formulation == Formulation::TransportVelocity ? ViscosityForm::Morris
-                                                                          : ViscosityForm::Monaghan;
+    return factsOf(scene).fillsSpace ? ViscosityForm::Morris : ViscosityForm::Monaghan;
 }
 const char* whyViscosityForm(const Scene& scene) {
     if (scene.fluid.viscosityForm != ViscosityForm::Auto) return "fluid.viscosity_form says so";
@@ -172,10 +170,7 @@ bool hasMixingForces(const Scene& scene) {
     return scene.fluid.velocityTransfer > 0 || scene.fluid.buoyancy > 0;
 }
 
-bool shiftsParticles(const Scene& scene) {
-    const Formulation f = scene.simulation.formulation;
-    return f == Formulation::DeltaPlus || f == Formulation::TransportVelocity;
-}
+bool shiftsParticles(const Scene& scene) { return factsOf(scene).shifts; }
 
 Placement placeParticles(const Scene& scene) {
     Placement out;

@@ -1,333 +1,126 @@
-// Steps of their own for particles (time.mode local). A step of the whole is twice what cfl says;
-// in it each particle takes one, two, four, ... steps, as its speed and acceleration ask for, and
-// forces are evaluated only where a particle is due. A particle's velocity changes where its own
-// step begins, so that in between it is where its straight line leads: neighbours see nothing
-// extrapolated. Blocks of cells whose surroundings have been calm for long rest: they are neither
-// evaluated nor moved until something comes near.
+// Steps of their own for particles, on one device: which are active, and their part of the plan.
 #pragma once
 
-#include "device/buffer.h"
-#include "sim/passes.h"
+#include "sim/block_time_step_passes.h"
+#include "sim/flow.h"
+#include "sim/part.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace spindrift::LANES {
 
-// Parts of a step that particles' own steps are whole numbers of: 1/64 is the shortest.
-inline constexpr int deepestTimeBin = 6, parts = 1 << deepestTimeBin;
-// Who rests is decided every few steps, in which nothing crosses a spacing. So many decisions a
-// block's surroundings must have been calm for before it rests, and so many after which it wakes if
-// any neighbour is awake: each time that nothing has come of it twice as many. (Always as many, and
-// a still pool of 18,000 was not at rest after 16 s; so it is after 6.5.)
-inline constexpr int stepsToDecide = 8, calmDecisions = 32, firstSleep = 96,
-                     longestSleep = 64 * firstSleep;
-HD inline bool decides(const StepState& s) {
-    return s.substep == 0 && s.steps % stepsToDecide == 0;
-}
-
-HD inline bool isActive(real timeBin, const StepState& s) { return timeBin >= real(s.timeBin); }
-
-// f(first, end) for the stretches of slots that block b is, of fluid or walls, by where particles
-// were sorted in.
-template <class F>
-HD inline void forStretches(const View& v, const int* cellStart, int b, const F& f) {
-    const Blocks& blocks = v.blocks;
-    const Int3 at{b % blocks.count.x, b / blocks.count.x % blocks.count.y,
-                  b / (blocks.count.x * blocks.count.y)};
-    auto end = [](int k, int count, int size, int cells) {
-        return k + 1 == count ? cells : (k + 1) * size;
-    };
-    const int lastX = end(at.x, blocks.count.x, blocks.size.x, v.grid.cells.x),
-              lastY = end(at.y, blocks.count.y, blocks.size.y, v.grid.cells.y);
-    const int lastZ = end(at.z, blocks.count.z, blocks.size.z, v.grid.cells.z);
-    for (int z = at.z * blocks.size.z; z < lastZ; ++z)
-        for (int y = at.y * blocks.size.y; y < lastY; ++y) {
-            const int* row = cellStart + v.grid.row(y, z);
-            f(row[at.x * blocks.size.x], row[lastX]);
-        }
-}
-// f(i) for its particles.
-template <class F>
-HD inline void forParticles(const View& v, const int* cellStart, int b, const F& f) {
-    forStretches(v, cellStart, b, [&](int first, int end) {
-        for (int i = first; i < end; ++i) f(i);
-    });
-}
-
-// f(b) for block b and those around it.
-template <class F> HD inline void forBlocksAround(const View& v, int b, const F& f) {
-    const Int3 n = v.blocks.count;
-    const int x = b % n.x, y = b / n.x % n.y, z = b / (n.x * n.y);
-    auto first = [](int k, int wraps) { return wraps ? k - 1 : k > 0 ? k - 1 : 0; };
-    auto last = [](int k, int count, int wraps) { return wraps || k + 1 < count ? k + 1 : k; };
-    for (int c = first(z, v.grid.wraps.z); c <= last(z, n.z, v.grid.wraps.z); ++c)
-        for (int r = first(y, v.grid.wraps.y); r <= last(y, n.y, v.grid.wraps.y); ++r)
-            for (int a = first(x, v.grid.wraps.x); a <= last(x, n.x, v.grid.wraps.x); ++a)
-                f((Grid::wrapped(c, n.z) * n.y + Grid::wrapped(r, n.y)) * n.x +
-                  Grid::wrapped(a, n.x));
-}
-
-// At the beginning of a step: how long it is. It ends where the run is to be looked at.
-struct BeginStep {
-    using Index = int;
-    View v;
-    HD void operator()(int) const {
-        StepState& s = *v.state;
-        if (s.substep == 0)
-            s.longest = untilStop(s, min(real(2) * acousticStep(v.c, real(s.speed)), v.c.maxStep));
-    }
-};
-
-// Of each block its mean square speed, or that of moving walls in it; -1 where nothing moves.
-struct MeasureBlocks {
-    using Index = int;
-    View v;
-    HD void operator()(int b) const {
-        if (!decides(*v.state)) return;
-        real sum = 0, walls2 = 0;
-        int count = 0;
-        forParticles(v, v.fluidNearFluid.cellStart, b, [&](int i) {
-            const Vector<real> u = load(v.fluid.velocity, i);
-            if (v.fluid.id[i] >= 0) sum += dot(u, u), ++count;
-        });
-        if (v.walls.ownVelocity.data)
-            forParticles(v, v.wallsNearFluid.cellStart, b, [&](int i) {
-                const Vector<real> u = load(v.walls.ownVelocity, i);
-                if (v.walls.id[i] >= 0) walls2 = max(walls2, dot(u, u));
-            });
-        const bool still = sum + walls2 == 0 && (count == 0 || v.blocks.calm[b] >= calmDecisions);
-        v.blocks.speed2[b] = still ? real(-1) : max(sum / real(count > 0 ? count : 1), walls2);
-    }
-};
-
-// Who rests: blocks whose surroundings have long been slower than restSpeed c. They wake when
-// something faster comes near, and after a while if any of their neighbours is awake, for these may
-// have changed slowly. Fluid that rests doesn't move at all.
-struct RestBlocks {
-    using Index = int;
-    View v;
-    HD void operator()(int b) const {
-        if (!decides(*v.state)) return;
-        int &calm = v.blocks.calm[b], &sleepLength = v.blocks.sleepLength[b];
-        const bool rested = calm >= calmDecisions;
-        if (!rested && v.blocks.speed2[b] < 0) return;  // nobody is here
-        real speed2 = -1;
-        forBlocksAround(v, b, [&](int other) { speed2 = max(speed2, v.blocks.speed2[other]); });
-        const real rest = v.c.restSpeed * v.c.soundSpeed, limit = rested ? wake * rest : rest;
-        const bool disturbed = speed2 >= limit * limit, slept = calm >= sleepLength && speed2 >= 0;
-        if (rested && (disturbed || slept))
-            sleepLength = disturbed ? firstSleep : min(2 * sleepLength, longestSleep);
-        calm = disturbed || slept ? 0 : min(calm + 1, sleepLength);
-        const bool rests = calm >= calmDecisions;
-        forParticles(v, v.fluidNearFluid.cellStart, b, [&](int i) {
-            if (v.fluid.id[i] < 0) return;
-            store(v.fluid.timeBin, i, rests ? resting : real(0));
-            if (!rests) return;
-            store(v.fluid.velocity, i, Vector<real>{0, 0, 0});
-            if (v.fluid.densityRate.data) store(v.fluid.densityRate, i, real(0));
-        });
-    }
-    HD static int min(int a, int b) { return a < b ? a : b; }
-    // Falling asleep disturbs the neighbours, by about the speed that was there.
-    static constexpr real wake = 4;
-};
-
-// Clusters with a particle that is due.
-struct FindActiveClusters {
-    using Index = int;
-    View v;
-    HD void operator()(int cluster) const {
-        real shortest = resting;
-        for (int i = cluster * clusterSize; i < (cluster + 1) * clusterSize; ++i)
-            shortest = max(shortest, load(v.fluid.timeBin, i));
-        v.fluid.active[cluster] = isActive(shortest, *v.state) ? Active
-                                  : shortest < 0               ? Sleeping
-                                                               : Inactive;
-    }
-};
-struct FindActiveBlocks {
-    using Index = int;
-    View v;
-    HD void operator()(int b) const {
-        bool active = false;
-        forStretches(v, v.fluidNearFluid.cellStart, b, [&](int first, int end) {
-            for (int c = first / clusterSize; c * clusterSize < end; ++c)
-                active = active || v.fluid.active[c] == Active;
-        });
-        v.blocks.active[b] = active;
-    }
-};
-// Blocks in touch with one that is due, SleepingHalo those where somebody rests.
-struct FindNearBlocks {
-    using Index = int;
-    View v;
-    HD void operator()(int b) const {
-        bool near = false, rests = false;
-        forBlocksAround(v, b, [&](int other) { near = near || v.blocks.active[other]; });
-        if (near)
-            forParticles(v, v.fluidNearFluid.cellStart, b, [&](int i) {
-                rests = rests || (load(v.fluid.timeBin, i) < 0 && v.fluid.id[i] >= 0);
-            });
-        v.blocks.near[b] = rests ? SleepingHalo : near ? NearActive : Inactive;
-    }
-};
-// Of these blocks the clusters of fluid and walls; and of those around watched ones, whose pairs
-// with them count as well.
-struct SpreadActive {
-    using Index = int;
-    View v;
-    HD void operator()(int b) const {
-        const uint8_t near = v.blocks.near[b];
-        bool besideHalo = near != Inactive;
-        forBlocksAround(v, b, [&](int other) {
-            besideHalo = besideHalo || v.blocks.near[other] == SleepingHalo;
-        });
-        if (!besideHalo) return;
-        forStretches(v, v.fluidNearFluid.cellStart, b, [&](int first, int end) {
-            for (int c = first / clusterSize; c * clusterSize < end; ++c)
-                raise(v.fluid.active[c], near == Inactive ? uint8_t(NearActive) : near);
-        });
-        if (near == Inactive) return;
-        forStretches(v, v.wallsNearFluid.cellStart, b, [&](int first, int end) {
-            for (int c = first / clusterSize; c * clusterSize < end; ++c)
-                raise(v.walls.active[c], Active);
-        });
-    }
-    // Blocks may share a cluster, which is then the most that any of them says. (One that is a
-    // single particle has a single block.)
-    HD static void raise(uint8_t& flag, uint8_t value) {
-#ifdef __CUDA_ARCH__
-        if (flag < value) flag = value;
-#else
-        uint8_t before = __atomic_load_n(&flag, __ATOMIC_RELAXED);
-        while (before < value && !__atomic_compare_exchange_n(&flag, &before, value, true,
-                                                              __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
-        }
-#endif
-    }
-};
-struct ClearActive {
-    using Index = int;
-    Particles p;
-    HD void operator()(int cluster) const { p.active[cluster] = Inactive; }
-};
-
-// Where a particle's own step begins: how long it is, and v += a dt. The longest is for calm fluid,
-// dt <= 0.05 sqrt(h/(eps+|a|)) and 0.1 h/(eps+|u|) for cfl = 0.4, in the form of Reinhardt 2017
-// (there 0.02 and 0.05, with which half of a dam break takes half the step and errors are the
-// same); the rest takes what would be good for all if all were like it.
-struct KickActive {
-    using Index = Lanes4;
-    using R = Real<Lanes4>;
-    View v;
-    HD void operator()(Lanes4 i) const {
-        if (!isActive(v.fluid, i)) return;
-        const R before = load(v.fluid.timeBin, i), one = 1, now = real(v.state->timeBin);
-        const Vector<R> u = load(v.fluid.velocity, i), a = load(v.fluid.acceleration, i);
-        const R pull = squareRoot(dot(a, a)) + R(little), speed = squareRoot(dot(u, u)) + R(little);
-        const R h = v.c.support / 2, cfl = v.c.cfl, fall = squareRoot(h / pull);
-        const R calm = cfl * min(R(real(0.125)) * fall, R(real(0.25)) * h / speed);
-        const R wanted =
-            max(calm, min(cfl * h / (R(v.c.soundSpeed) + speed), R(real(0.25)) * fall));
-        R step = real(v.state->longest / (1 << v.state->timeBin)), timeBin = now;
-        for (int k = v.state->timeBin; k < deepestTimeBin; ++k) {
-            const auto tooLong = step > wanted;
-            step = select(tooLong, R(real(0.5)) * step, step);
-            timeBin = select(tooLong, timeBin + one, timeBin);
-        }
-        const auto isActive = before > now - R(real(0.5));
-        store(v.fluid.timeBin, i, select(isActive, timeBin, before));
-        store(v.fluid.velocity, i, addScaled(u, select(isActive, step, R(0)), a));
-    }
-    static constexpr real little = real(1e-3);  // m/s, m/s²
-};
-
-// The largest speed, the deepest level, and how many particles were awake and due.
-struct Motion {
-    float speed2 = 0;  // (m/s)^2
-    int deepest = 0;
-    double awake = 0, active = 0;
-    HD_OUT void add(const Motion& o) {
-        speed2 = o.speed2 > speed2 ? o.speed2 : speed2;
-        deepest = o.deepest > deepest ? o.deepest : deepest;
-        awake += o.awake, active += o.active;
-    }
-};
-struct FindMotion {
-    Particles p;
-    const StepState* state;
-    HD void addTo(Motion& m, int i) const {
-        const real timeBin = load(p.timeBin, i);
-        if (timeBin < 0) return;
-        const Vector<real> u = load(p.velocity, i);
-        m.add({float(dot(u, u)), int(timeBin), 1, isActive(timeBin, *state) ? 1.0 : 0.0});
-    }
-};
-
-// How long it is until the next particle is due.
-struct ChooseSubstep {
-    using Index = int;
-    View v;
-    const Motion* motion;
-    int count;  // of particles
-    HD void operator()(int) const {
-        StepState& s = *v.state;
-        const int part = parts >> motion->deepest, next = (s.substep / part + 1) * part;
-        s.dt = s.longest * (next - s.substep) / parts;
-        advanceTime(s, s.dt);
-        s.substep = next % parts;
-        s.timeBin = 0;
-        while (s.substep % (parts >> s.timeBin) != 0) ++s.timeBin;
-        if (s.substep == 0) ++s.steps;
-        s.speed = squareRoot(real(motion->speed2));
-        s.evaluations += motion->active;
-        s.awake = motion->awake / count;
-        s.allActive = s.timeBin == 0 && motion->awake == count && !decides(s);
-        s.allRest = motion->awake == 0 && !decides(s);
-    }
-};
-
-// All are due at the beginning of the next step.
-struct WakeParticles {
-    using Index = int;
-    Particles p;
-    HD void operator()(int i) const { store(p.timeBin, i, p.id[i] < 0 ? resting : real(0)); }
-};
-struct WakeBlocks {
-    using Index = int;
-    Blocks blocks;
-    HD void operator()(int b) const { blocks.calm[b] = 0, blocks.sleepLength[b] = firstSleep; }
-};
-
-template <class Device> class BlockTimeSteps {
+template <class Device> class BlockTimeSteps : public Part {
 public:
-    explicit BlockTimeSteps(Device& device) : device_(device) {}
-    // Blocks are whole cells and no smaller than `reach` (m), no less than that of neighbours:
-    // these lie in blocks that touch.
-    void resize(const Grid& grid, real reach) {
-        auto along = [&](int cells, real perMetre) {
-            return std::clamp(int(std::ceil(double(reach * perMetre))), 1, cells);
-        };
-        size_ = {along(grid.cells.x, grid.perMetre.x), along(grid.cells.y, grid.perMetre.y),
-                 along(grid.cells.z, grid.perMetre.z)};
-        count_ = {grid.cells.x / size_.x, grid.cells.y / size_.y, grid.cells.z / size_.z};
-        speed2_.resize(blocks()), calm_.resize(blocks()), sleepLength_.resize(blocks()),
-            active_.resize(blocks()), near_.resize(blocks());
-        motion_.resize(1);
-        wake();
+    explicit BlockTimeSteps(Flow<Device>& flow) : flow_(flow), device_(flow.device) {}
+
+    bool areOn() const { return flow_.scene.time.mode == TimeMode::Local; }
+    // All particles take part again, from the beginning of a step.
+    void wake() {
+        if (!areOn()) return;
+        device_.forEach(blocks(), WakeBlocks{flow_.blocks});
+        StepState clock = flow_.readClock();
+        clock.allActive = clock.allRest = false, clock.awake = 1;
+        flow_.setClock(clock);
+        device_.forEach(flow_.fluid.slots(), WakeParticles{flow_.fluid.view()});
     }
-    void wake() { device_.forEach(int(blocks()), WakeBlocks{view()}); }
-    bool used() const { return speed2_.size() > 0; }
-    size_t blocks() const { return size_t(count_.x) * size_t(count_.y) * size_t(count_.z); }
-    Motion* motion() { return motion_.data(); }
-    Blocks view() const {
-        return {count_,         size_,       speed2_.data(), calm_.data(), sleepLength_.data(),
-                active_.data(), near_.data()};
+    // Where all rest there is nothing to be done but to let time pass; says whether it did. (A GPU
+    // would have to be asked.)
+    bool letTimePass() {
+        if (Device::recordsSteps || !areOn() || !flow_.readClock().allRest) return false;
+        beginStep();
+        device_.forEach(1, ChooseSubstep{flow_.view(), motion_.data(), flow_.fluidCount});
+        return true;
+    }
+    bool atStepEnd() const { return flow_.readClock().substep == 0; }
+    double shareAwake() const { return areOn() ? flow_.readClock().awake : 1; }
+
+    // --- as a part (part.h) ---
+
+    void refresh() {
+        flow_.fluid.stepInBlocks(areOn());
+        flow_.walls.stepInBlocks(areOn());
+        if (areOn() && speed2_.size() == 0) makeBlocks();
+        flow_.allActive = flow_.allActive && areOn();
+    }
+    // Of particles that are not active, as the order is another one.
+    void sorted() {
+        if (areOn()) flow_.template onFluid<ApplyEquationOfState>();
+    }
+    void choose(Plan& plan, Initial initial) {
+        plan.add(
+            "rest", [this] { findResting(); }, initial,
+            !areOn()                         ? allAlike
+            : flow_.parameters.restSpeed > 0 ? ""
+                                             : "nothing rests (time.rest_speed)");
+        plan.add(
+            "active", [this] { findActive(); }, initial, areOn() ? "" : allAlike);
+    }
+
+    // Rows of the plan that others have not.
+    void begin(Plan& plan) {
+        plan.add("step", [this] { beginStep(); });
+    }
+    void kick(Plan& plan) {
+        plan.add("kick", [this] { flow_.template onFluid<KickActive>(); });
+    }
+    void chooseSubstep(Plan& plan) {
+        plan.add("substep", [this] { findSubstep(); });
     }
 
 private:
+    static constexpr const char* allAlike = "all take the same steps (time.mode)";
+
+    // Blocks are whole cells and no smaller than what neighbours lie apart: these lie in blocks
+    // that touch.
+    void makeBlocks() {
+        const Grid& grid = flow_.search.grid();
+        const real reach = real(2 * supportRadius(flow_.scene) * (1 + flow_.scene.compute.skin));
+        auto along = [&](int cells, real perMetre) {
+            return std::clamp(int(std::ceil(double(reach * perMetre))), 1, cells);
+        };
+        Blocks& b = flow_.blocks;
+        b.size = {along(grid.cells.x, grid.perMetre.x), along(grid.cells.y, grid.perMetre.y),
+                  along(grid.cells.z, grid.perMetre.z)};
+        b.count = {grid.cells.x / b.size.x, grid.cells.y / b.size.y, grid.cells.z / b.size.z};
+        const size_t n = size_t(b.count.x) * size_t(b.count.y) * size_t(b.count.z);
+        speed2_.resize(n), calm_.resize(n), sleepLength_.resize(n), active_.resize(n),
+            near_.resize(n), motion_.resize(1);
+        b.speed2 = speed2_.data(), b.calm = calm_.data(), b.sleepLength = sleepLength_.data();
+        b.active = active_.data(), b.near = near_.data();
+        device_.forEach(blocks(), WakeBlocks{b});
+    }
+    int blocks() const {
+        return flow_.blocks.count.x * flow_.blocks.count.y * flow_.blocks.count.z;
+    }
+    void beginStep() { device_.forEach(1, BeginStep{flow_.view()}); }
+    void findResting() {
+        device_.forEach(blocks(), MeasureBlocks{flow_.view()});
+        device_.forEach(blocks(), RestBlocks{flow_.view()});
+    }
+    void findActive() {
+        flow_.allActive = Device::hostReadable && flow_.readClock().allActive;
+        if (flow_.allActive) return;
+        const View v = flow_.view();
+        device_.forEach(v.fluid.slots / clusterSize, FindActiveClusters{v});
+        device_.forEach(blocks(), FindActiveBlocks{v});
+        device_.forEach(v.walls.slots / clusterSize, ClearActive{v.walls});
+        device_.forEach(blocks(), FindNearBlocks{v});
+        device_.forEach(blocks(), SpreadActive{v});
+    }
+    void findSubstep() {
+        device_.reduce(flow_.fluid.slots(), FindMotion{flow_.fluid.view(), flow_.clock.data()},
+                       motion_.data());
+        device_.forEach(1, ChooseSubstep{flow_.view(), motion_.data(), flow_.fluidCount});
+        if constexpr (NeighbourSearch<Device>::keepsLists) {
+            const StepState& clock = *flow_.clock.data();
+            flow_.search.movedAtMost(
+                clock.dt * std::max({clock.speed, flow_.stir.speed(), flow_.fastestPart()}));
+        }
+    }
+
+    Flow<Device>& flow_;
     Device& device_;
-    Int3 count_{0, 0, 0}, size_{1, 1, 1};
     Buffer<real, Device> speed2_{device_};
     Buffer<int, Device> calm_{device_}, sleepLength_{device_};
     Buffer<uint8_t, Device> active_{device_}, near_{device_};

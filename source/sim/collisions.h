@@ -3,7 +3,7 @@
 // a surface it stops, and slides along it for the rest of the step.
 #pragma once
 
-#include "sim/solids.h"
+#include "sim/solid_passes.h"
 
 namespace spindrift::LANES {
 

@@ -1,304 +1,77 @@
-// What floats: where solids touch each other and the domain's box, and how they move.
+// Solids that float or are dragged, on one device.
 #pragma once
 
 #include "scene/mass.h"
-#include "sim/collisions.h"
+#include "sim/floating_passes.h"
+#include "sim/solids.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 namespace spindrift::LANES {
 
-// Where a solid touches, it is made of balls: its outermost boundary particles, as large as they
-// are deep in it. They press like damped springs and rub (Cundall & Strack 1979); a face full of
-// them is as stiff as the step can bear, and overlaps by about a thousandth of a spacing under its
-// weight.
-struct Wrench {
-    Vec3d force, torque;
-    HD_OUT void add(const Wrench& o) { force = force + o.force, torque = torque + o.torque; }
-};
-
-// What presses: a mass m on such a spring, k = m rate^2, swings at `rate` rad/s and is damped by
-// that share of the critical.
-struct Springs {
-    real rate, damping;
-};
-
-// m, of a ball in a solid; with the direction out of it and the solid's own velocity there.
-HD inline real depthIn(const View& v, const SolidState& s, Vector<real> x, real radius,
-                       Vector<real>& n, Vector<real>& velocity) {
-    const Vector<real> arm = imageOf(v.c, x - s.middle);
-    if (dot(arm, arm) > (s.reach + radius) * (s.reach + radius)) return real(-1);
-    const real depth =
-        radius -
-        surface(s, Vector<real>{dot(arm, s.axis[0]), dot(arm, s.axis[1]), dot(arm, s.axis[2])}, n);
-    n = turned(s, n), velocity = s.velocity + cross(s.spin, arm);
-    return depth;
-}
-
-// Sums what `solid` feels where its balls touch walls and other solids, and where other solids'
-// balls touch it.
-struct SumTouches {
-    View v;
-    WallsAtHome home;
-    const RigidBody* bodies;
-    int solid;
-    struct Ball {
-        Vector<real> position, velocity;
-        real radius;
-    };
-
-    HD void addTo(Wrench& sum, int i) const {
-        const int owner = v.walls.id[i] < 0 ? -1 : home.solidOf(v.walls.id[i]);
-        if (owner < 0) return;
-        const SolidState& own = v.solids[owner];
-        const int k = v.walls.id[i] - home.firstId;
-        Vector<real> at = load(home.position, k) - own.home, normal{0, 0, 0};
-        real depth = -surface(own, at, normal);
-        Vector<real> place = load(v.walls.position, i);
-        if (own.grace > 0) {  // each face has its own, and has them on itself where it is too thin
-            const Vector<real> face = load(home.face, k);
-            if (dot(face, face) > bodies[owner].deepestBall * bodies[owner].deepestBall) return;
-            if (depth < 0)
-                depth = -surface(own, at - face, normal), place = place - turned(own, face);
-            if (depth < real(-0.1) * bodies[owner].deepestBall) return;
-            depth = max(depth, real(0));
-        }
-        if (depth > bodies[owner].deepestBall) return;
-        const Ball ball{place, load(v.walls.ownVelocity, i), depth};
-        Vector<real> force{0, 0, 0};
-        if (owner != solid)
-            force = real(-1) * pressOn(ball, owner, solid);
-        else {
-            touchBox(ball, force);
-            for (int other = 0; other < v.solidCount; ++other)
-                if (other != solid) force = force + pressOn(ball, solid, other);
-        }
-        const Vec3d f{force.x, force.y, force.z};
-        const Vector<real> arm = imageOf(v.c, ball.position - v.solids[solid].centreOfMass);
-        sum.add({f, cross(Vec3d{arm.x, arm.y, arm.z}, f)});
-    }
-    HD void touchBox(const Ball& b, Vector<real>& force) const {
-        const RigidBody& body = bodies[solid];
-        auto side = [&](real overlap, Vector<real> n) {
-            force = force + press(body, overlap, n, b.velocity - wallVelocity(v.c, b.position));
-        };
-        const StepParameters& c = v.c;
-        if (c.period.x <= 0)
-            side(b.radius - (b.position.x - c.low.x), {1, 0, 0}),
-                side(b.radius - (c.high.x - b.position.x), {-1, 0, 0});
-        if (c.period.y <= 0)
-            side(b.radius - (b.position.y - c.low.y), {0, 1, 0}),
-                side(b.radius - (c.high.y - b.position.y), {0, -1, 0});
-        if (c.period.z <= 0 && c.dimensions == 3)
-            side(b.radius - (b.position.z - c.low.z), {0, 0, 1}),
-                side(b.radius - (c.high.z - b.position.z), {0, 0, -1});
-    }
-    HD Vector<real> pressOn(const Ball& b, int owner, int other) const {
-        const SolidState& s = v.solids[other];
-        Vector<real> n{0, 0, 0}, own{0, 0, 0};
-        const real depth = depthIn(v, s, b.position, b.radius, n, own);
-        if (depth <= 0) return {0, 0, 0};
-        const RigidBody &mine = bodies[owner], &theirs = bodies[other];
-        const RigidBody& softer = mine.stiffness < theirs.stiffness ? mine : theirs;
-        RigidBody both = softer;
-        both.friction = min(mine.friction, theirs.friction);
-        return press(both, depth, n, b.velocity - own);
-    }
-    HD static Vector<real> press(const RigidBody& b, real overlap, Vector<real> n,
-                                 Vector<real> velocity) {
-        if (overlap <= 0) return {0, 0, 0};
-        const real apart = dot(velocity, n),
-                   normal = max(b.stiffness * overlap - b.damping * apart, real(0));
-        const Vector<real> along = velocity - apart * n;
-        const real slip = squareRoot(dot(along, along));
-        return addScaled(normal * n, -min(b.damping, b.friction * normal / max(slip, real(1e-12))),
-                         along);
-    }
-};
-
-struct AddTouch {
-    using Index = int;
-    const Wrench* one;
-    Wrench* sum;
-    HD void operator()(int) const { sum->add(*one); }
-};
-
-// The momentum that particles lost where a solid stopped them, kg m/s, and the angular momentum
-// about its centre.
-struct SumBounces {
-    View v;
-    Bounces bounces;
-    real mass;  // kg, of a fluid particle
-    int solid;
-    HD void addTo(Wrench& sum, int i) const {
-        if (v.fluid.id[i] < 0 || load(bounces.solid, i) != real(solid)) return;
-        const Vector<real> change = load(bounces.change, i),
-                           arm = imageOf(v.c,
-                                         load(v.fluid.position, i) - v.solids[solid].centreOfMass);
-        const Vec3d lost =
-            -double(mass * massRatio(v.fluid, i)) * Vec3d{change.x, change.y, change.z};
-        sum.add({lost, cross(Vec3d{arm.x, arm.y, arm.z}, lost)});
-    }
-};
-struct TakeMomentum {
-    using Index = int;
-    const RigidBody* bodies;
-    const Wrench* given;
-    SolidMotion* motions;
-    int dimensions;
-    HD void operator()(int s) const {
-        if (bodies[s].mass <= 0) return;
-        Wrench t = given[s];
-        if (dimensions == 2) t.force.z = t.torque.x = t.torque.y = 0;
-        motions[s].velocity = motions[s].velocity + (1 / bodies[s].mass) * t.force;
-        motions[s].angularMomentum = motions[s].angularMomentum + t.torque;
-    }
-};
-
-// The mouse's hand on a solid that doesn't float: the mass of fluid in its place, kg, 0: nothing
-// stops it; and what it gave to objects in the last step.
-struct Hand {
-    double mass;
-    const Stops* stops;
-};
-
-// v += F / m dt, x += v dt; the same of angular momentum and turn. A solid that the mouse holds
-// goes where it is wanted: one that floats by a damped spring, another one by itself, no faster
-// than a tenth of the speed of sound. Both hands are as strong. Objects that the solid runs into
-// slow it, as one body with those of their particles that it stops.
-struct MoveFloating {
-    using Index = int;
-    View v;
-    const RigidBody* bodies;
-    SolidMotion* motions;
-    const SolidLoad* loads;
-    const Wrench* touches;
-    double fluidMass;  // kg, of a particle
-    Hold hold;         // target relative to the domain's lower corner
-    Hand hand;
-    double kick, drift;                      // shares of the step
-    static constexpr double strongest = 60;  // m/s², of the solid that is held
-    HD void operator()(int s) const { bodies[s].mass > 0 ? moveFloating(s) : drag(s); }
-    HD void moveFloating(int s) const {
-        const RigidBody& body = bodies[s];
-        SolidMotion& m = motions[s];
-        const double dt = v.state->dt;
-        Wrench w = wrenchOn(s);
-        if (hold.solid == s) pull(w, body, m, v.solids[s]);
-        if (v.c.dimensions == 2) w.force.z = w.torque.x = w.torque.y = 0;
-        const Vec3d spin = spinOf(body, m),
-                    spinRate = turning(body, m, w.torque - cross(spin, m.angularMomentum));
-        m.acceleration = m.acceleration + body.told * ((1 / body.mass) * w.force - m.acceleration);
-        m.spinRate = m.spinRate + body.told * (spinRate - m.spinRate);
-        m.velocity = m.velocity + (kick * dt / body.mass) * w.force;
-        m.angularMomentum = m.angularMomentum + (kick * dt) * w.torque;
-        m.place = wrapped(m.place + (drift * dt) * m.velocity);
-        turnBy(m.turn, (drift * dt) * spinOf(body, m));
-    }
-    HD Wrench wrenchOn(int s) const {
-        const SolidLoad& load = loads[s];
-        const SolidState& state = v.solids[s];
-        const Vector<real> pull = bodyForce(v.c, gravityNow(v), state.centreOfMass),
-                           out = state.middle - state.centreOfMass;
-        auto sum = [&](int k) { return fluidMass * (load.pressure[k] + load.other[k]); };
-        const Vec3d fluid{sum(0), sum(1), sum(2)},
-            torque{load.torque[0], load.torque[1], load.torque[2]};
-        return {fluid + touches[s].force + bodies[s].mass * Vec3d{pull.x, pull.y, pull.z},
-                fluidMass * torque + cross(Vec3d{out.x, out.y, out.z}, fluid) + touches[s].torque};
-    }
-    HD void pull(Wrench& w, const RigidBody& body, const SolidMotion& m,
-                 const SolidState& s) const {
-        const double rate = 15;  // 1/s
-        const Vec3d target{hold.target.x, hold.target.y, hold.target.z};
-        const Vec3d wanted = (rate * rate) * (target - Vec3d{s.middle.x, s.middle.y, s.middle.z}) -
-                             (2 * rate) * m.velocity;
-        const double size = sqrt(dot(wanted, wanted));
-        w.force = w.force + (body.mass * (size > strongest ? strongest / size : 1.0)) * wanted;
-        w.torque = w.torque - rate * m.angularMomentum;
-    }
-    HD void drag(int s) const {
-        const double time = 0.05, fastest = 0.1 * double(v.c.soundSpeed),
-                     dt = v.state->dt;  // s, m/s
-        SolidMotion& m = motions[s];
-        const Vec3d before = m.velocity;
-        m.velocity = {0, 0, 0};
-        if (hold.solid != s) {
-            m.acceleration = {0, 0, 0};
-            return;
-        }
-        if (m.left < 0 && !v.solids[s].steady) m.left = v.state->time - dt;
-        const Vector<real> at = v.solids[s].middle;
-        const Vec3d way =
-            Vec3d{hold.target.x, hold.target.y, hold.target.z} - Vec3d{at.x, at.y, at.z};
-        const double far = sqrt(dot(way, way)), stops = sqrt(strongest * far);
-        double speed = far / (dt > time ? dt : time);
-        if (speed > fastest) speed = fastest;
-        if (hand.mass > 0 && speed > stops) speed = stops;  // it has to be slowed down again
-        m.velocity = (far > 0 ? speed / far : 0) * way;
-        if (hand.mass > 0) m.velocity = pushed(before, m.velocity);
-        if (v.c.dimensions == 2) m.velocity.z = 0;
-        const Vec3d change = (1 / (kick * dt)) * (m.velocity - before);
-        m.acceleration = m.acceleration + 0.25 * (change - m.acceleration);
-        m.place = m.place + (drift * dt) * m.velocity;
-    }
-    // From one velocity towards another, against the objects in its way.
-    HD Vec3d pushed(Vec3d before, Vec3d wanted) const {
-        const double* given = hand.stops->momentum;
-        const double all = hand.mass + hand.stops->mass,
-                     most = strongest * hand.mass / all * kick * v.state->dt;
-        const Vec3d slowed = before - (kick / all) * Vec3d{given[0], given[1], given[2]},
-                    change = wanted - slowed;
-        const double size = sqrt(dot(change, change));
-        return slowed + (size > most ? most / size : 1.0) * change;
-    }
-    HD Vec3d wrapped(Vec3d x) const {
-        const StepParameters& c = v.c;
-        return {x.x - c.period.x * floor(x.x * c.inversePeriod.x),
-                x.y - c.period.y * floor(x.y * c.inversePeriod.y),
-                x.z - c.period.z * floor(x.z * c.inversePeriod.z)};
-    }
-};
-
-// What the mouse no longer holds stands still, but for what floats.
-struct LetGo {
-    using Index = int;
-    const RigidBody* bodies;
-    SolidMotion* motions;
-    HD void operator()(int s) const {
-        if (bodies[s].mass <= 0) motions[s].velocity = motions[s].acceleration = {0, 0, 0};
-    }
-};
-
 // Owns what is known of solids as bodies that move by themselves or are dragged.
-template <class Device> class Floating {
+template <class Device> class Floating : public Part {
 public:
-    explicit Floating(Device& device) : device_(device) {}
-
-    // What solids are, for good.
-    void place(const Scene& scene) {
-        for (const Solid& solid : scene.solids) {
-            onHost_.push_back(bodyOf(scene, solid));
-            faces_.push_back(solid.floats() ? ballsOfAFace(scene, solid) : 1);
+    Floating(Flow<Device>& flow, Solids<Device>& solids)
+        : flow_(flow), device_(flow.device), solids_(solids) {
+        for (const Solid& solid : flow.scene.solids) {
+            onHost_.push_back(bodyOf(flow.scene, solid));
+            faces_.push_back(solid.floats() ? ballsOfAFace(flow.scene, solid) : 1);
         }
         loads_.resize(onHost_.size()), touches_.resize(onHost_.size()), also_.resize(1);
-        takeInHand(scene, -1);
+        takeInHand(-1);
+        if (solids.floats())
+            bounces((flow.fluidCount + clusterSize - 1) / clusterSize * clusterSize);
     }
-    // `motions` of a run that goes on; none: solids are at their places in the scene.
-    void restart(const Scene& scene, std::vector<SolidMotion> motions) {
+    // Null where none floats.
+    const RigidBody* bodies() const { return solids_.floats() ? bodies_.data() : nullptr; }
+    Springs springs() const { return springs_; }
+    int held() const { return hold_.solid; }
+
+    // The mouse pulls at a solid, or lets it go.
+    void hold(const Hold& h) {
+        if (h.solid != hold_.solid) {
+            device_.forEach(int(onHost_.size()), LetGo{bodies_.data(), motions_.data()});
+            takeInHand(h.solid);
+        }
+        hold_ = {h.solid, h.target - flow_.scene.domain.min};
+    }
+    // `sum(solid)` is the reduction over `count` of what else touches it.
+    template <class Sum> void addTouches(int count, const Sum& sum) {
+        forFloating([&](int s) {
+            device_.reduce(count, sum(s), also_.data());
+            device_.forEach(1, AddTouch{also_.data(), touches_.data() + s});
+        });
+    }
+    // What the solid in hand gave to `count` others.
+    template <class Sum> void feelStops(int count, const Sum& sum) {
+        device_.reduce(count, sum, stops_.data());
+    }
+
+    // --- as a part (part.h) ---
+
+    void restart(const RunState& state) {
+        std::vector<SolidMotion> motions = state.solids;
         for (size_t s = motions.size(); s < onHost_.size(); ++s)
-            motions.push_back(scene.solids[s].floats()
-                                  ? motionAtHome(scene, scene.solids[s], onHost_[s])
+            motions.push_back(flow_.scene.solids[s].floats()
+                                  ? motionAtHome(flow_.scene, flow_.scene.solids[s], onHost_[s])
                                   : SolidMotion{});
         CHECK(motions.size() == onHost_.size());
         fill(motions_, motions);
+        solids_.followBodies(bodies_.data(), motions_.data());
     }
-    // How balls press, as live knobs say: a face full of them swings a fifth of a radian in the
-    // longest `step` that the run takes, s.
-    void setSprings(const Scene& scene, double step) {
+    void save(RunState& state) {
+        if (!solids_.moves()) return;
+        state.solids.resize(motions_.size());
+        device_.download(state.solids.data(), motions_.data(), motions_.size());
+    }
+    // How balls press: a face full of them swings a fifth of a radian in the longest step.
+    void knowLongestStep(double step) {
         const double rate = 0.2 / step,
-                     lost = std::log(std::max(double(scene.walls.restitution), 1e-6)),
+                     lost = std::log(std::max(double(flow_.scene.walls.restitution), 1e-6)),
                      ratio = -lost / std::hypot(lost, std::numbers::pi);
         springs_ = {real(rate), real(ratio)};
         for (size_t s = 0; s < onHost_.size(); ++s) {
@@ -307,74 +80,79 @@ public:
             onHost_[s].damping = real(2 * ratio * onHost_[s].mass * rate / faces_[s]);
         }
         fill(bodies_, onHost_);
+        solids_.followBodies(bodies_.data(), motions_.data());
     }
-    std::vector<SolidMotion> download() {
-        std::vector<SolidMotion> motions(motions_.size());
-        device_.download(motions.data(), motions_.data(), motions.size());
-        return motions;
+    void addForces(Plan& plan, Initial initial) {
+        plan.add(
+            "solid forces", [this] { findForces(); }, initial, solids_.whyNoneFloats());
     }
-    Springs springs() const { return springs_; }
-    const RigidBody* bodies() const { return bodies_.data(); }
-    const SolidMotion* motions() const { return motions_.data(); }
-    void letGo() { device_.forEach(int(onHost_.size()), LetGo{bodies_.data(), motions_.data()}); }
+    void move(Plan& plan, ShareOfStep share) {
+        plan.add(
+            "floating solids", [this, share] { moveBodies(share); }, Initial::No,
+            hold_.solid >= 0 && share.drifts ? "" : solids_.whyNoneFloats());
+    }
+    void collide(Plan& plan) {
+        plan.add(
+            "solid collisions", [this] { keepOut(); }, Initial::No,
+            solids_.count() > 0 ? "" : "there are no solids");
+    }
 
-    // `sum(solid)` is the reduction of what fluid does to it.
-    template <class Sum>
-    void findForces(const Scene& scene, const View& v, const WallsAtHome& home, const Sum& sum) {
-        for (int s = 0; s < v.solidCount; ++s) {
-            if (!scene.solids[size_t(s)].floats()) continue;
-            device_.reduce(v.walls.slots, sum(s), loads_.data() + s);
-            device_.reduce(v.walls.slots, SumTouches{v, home, bodies_.data(), s},
-                           touches_.data() + s);
-        }
+private:
+    template <class F> void forFloating(const F& f) {
+        for (size_t s = 0; s < flow_.scene.solids.size(); ++s)
+            if (flow_.scene.solids[s].floats()) f(int(s));
     }
-    // `sum(solid)` is the reduction over `count` of what else touches it.
-    template <class Sum> void addTouches(const Scene& scene, int count, const Sum& sum) {
-        for (size_t s = 0; s < scene.solids.size(); ++s) {
-            if (!scene.solids[s].floats()) continue;
-            device_.reduce(count, sum(int(s)), also_.data());
-            device_.forEach(1, AddTouch{also_.data(), touches_.data() + s});
-        }
+    void findForces() {
+        solids_.findLoads();
+        const View v = flow_.view();
+        forFloating([&](int s) {
+            device_.reduce(v.walls.slots, solids_.sumOf(v, s), loads_.data() + s);
+            device_.reduce(v.walls.slots, SumTouches{v, solids_.home(), bodies_.data(), s},
+                           touches_.data() + s);
+        });
+    }
+    void moveBodies(ShareOfStep share) {
+        device_.forEach(solids_.count(), MoveFloating{flow_.view(),
+                                                      bodies_.data(),
+                                                      motions_.data(),
+                                                      loads_.data(),
+                                                      touches_.data(),
+                                                      double(particleMass(flow_.scene)),
+                                                      hold_,
+                                                      {handMass_, stops_.data()},
+                                                      0.5 * share.halvesOfKick,
+                                                      share.drifts ? 1.0 : 0.0});
+    }
+    void keepOut() {
+        if (solids_.moves()) solids_.sweep();
+        const int slots = flow_.fluid.slots();
+        const bool floats = solids_.floats();
+        device_.forEach(slots, KeepOutOfSolids{flow_.view(), floats ? bounces(slots) : Bounces{}});
+        if (floats) takeMomentum(flow_.view());
     }
     Bounces bounces(int slots) {
         change_.resize(vectorSize(slots)), stoppedBy_.resize(size_t(slots));
         return {{change_.data()}, {stoppedBy_.data()}};
     }
-    void takeMomentum(const Scene& scene, const View& v) {
-        for (int s = 0; s < v.solidCount; ++s)
-            if (scene.solids[size_t(s)].floats())
-                device_.reduce(v.fluid.slots,
-                               SumBounces{v, bounces(v.fluid.slots), real(particleMass(scene)), s},
-                               touches_.data() + s);
+    void takeMomentum(const View& v) {
+        forFloating([&](int s) {
+            device_.reduce(
+                v.fluid.slots,
+                SumBounces{v, bounces(v.fluid.slots), real(particleMass(flow_.scene)), s},
+                touches_.data() + s);
+        });
         device_.forEach(v.solidCount, TakeMomentum{bodies_.data(), touches_.data(), motions_.data(),
-                                                   scene.simulation.dimensions});
-    }
-    void move(const View& v, double fluidMass, const Hold& hold, double kick, double drift) {
-        device_.forEach(v.solidCount, MoveFloating{v,
-                                                   bodies_.data(),
-                                                   motions_.data(),
-                                                   loads_.data(),
-                                                   touches_.data(),
-                                                   fluidMass,
-                                                   hold,
-                                                   {handMass_, stops_.data()},
-                                                   kick,
-                                                   drift});
+                                                   flow_.scene.simulation.dimensions});
     }
     // From now on the mouse holds this one, -1: none.
-    void takeInHand(const Scene& scene, int solid) {
+    void takeInHand(int solid) {
         fill(stops_, std::vector<Stops>(1));
         handMass_ = 0;
         if (solid < 0) return;
-        Solid wet = scene.solids[size_t(solid)];
-        wet.density = scene.fluid.restDensity;
-        if (wet.shape != Shape::Plane) handMass_ = massOf(scene, wet).mass;
+        Solid wet = flow_.scene.solids[size_t(solid)];
+        wet.density = flow_.scene.fluid.restDensity;
+        if (wet.shape != Shape::Plane) handMass_ = massOf(flow_.scene, wet).mass;
     }
-    template <class Sum> void feelStops(int count, const Sum& sum) {
-        device_.reduce(count, sum, stops_.data());
-    }
-
-private:
     template <class T> void fill(Buffer<T, Device>& buffer, const std::vector<T>& host) {
         buffer.resize(host.size());
         device_.upload(buffer.data(), host.data(), host.size());
@@ -421,7 +199,10 @@ private:
         return m;
     }
 
+    Flow<Device>& flow_;
     Device& device_;
+    Solids<Device>& solids_;
+    Hold hold_;  // target relative to the domain's lower corner
     std::vector<RigidBody> onHost_;
     std::vector<double> faces_;  // balls of a face of each
     Springs springs_{};

@@ -1,8 +1,8 @@
 // The one neighbour loop. f(pair, j) is called with every particle j of the other set nearer than
 // the support radius R, the particle itself included when it is of the same set; with SIMD also
 // with some that are further away, which kernels turn into zeros. The first pass of a step,
-// `Prune`, notes for the later ones, `Pruned`, which clusters are worth a look; lists that are read
-// but once a step build no inner list, `All`.
+// `BuildInner`, notes for the later ones, `Inner`, which clusters are worth a look; lists that are
+// read but once a step build no inner list, `All`.
 #pragma once
 
 #include "sim/screens.h"
@@ -27,7 +27,7 @@ HD inline Pair<R> makePair(const StepParameters& c, Vector<R> xi, Vector<R> xj, 
 enum class Lists { All, BuildInner, Inner };
 
 #ifdef SPINDRIFT_SIMD
-// A group narrower than a cluster sees but a part of the hits, so that it can't prune.
+// A group narrower than a cluster sees but a part of the hits, so that it can't tell.
 inline constexpr bool buildsInner = ICluster::size == clusterSize;
 
 // Of the pairs of the particles i with a cluster those that are hidden.
@@ -37,7 +37,7 @@ HD inline Wide apartUnless(uint16_t seen, ICluster i) {
     return select(Wide::Mask{hn::LoadMaskBits(WideTag(), bits)}, Wide(0), Wide(4));
 }
 
-// With `due` only clusters of which it says at least `from`. The clusters of which all are seen
+// With `active` only clusters of which it says at least `from`. The clusters of which all are seen
 // come first, in one stretch, then one by one those of which thin solids hide some.
 template <Lists lists, uint8_t from = Active, class F>
 HD inline void forNeighbours(const View& v, const Neighbourhood& near, ICluster i, Vector<Wide> xi,
@@ -71,6 +71,8 @@ HD inline void forNeighbours(const View& v, const Neighbourhood& near, ICluster 
         list.innerCount = kept, list.innerClear = keptClear;
 }
 #else
+inline constexpr bool buildsInner = false;
+
 // Distance from a coordinate, itself in row `own`, to a row; a bit less, as a particle on a face
 // may have been rounded into the next row.
 HD inline real rowGap(real x, int own, int row, real low, real rowSize) {

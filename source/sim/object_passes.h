@@ -4,8 +4,9 @@
 
 #include "scene/motion.h"
 #include "sim/contact.h"
-#include "sim/floating.h"
-#include "sim/solids.h"
+#include "sim/floating_passes.h"
+#include "sim/passes.h"
+#include "sim/solid_passes.h"
 
 namespace spindrift::LANES {
 

@@ -6,7 +6,7 @@
 #include "sim/object_passes.h"
 #include "sim/object_state.h"
 #include "sim/particle_set.h"
-#include "sim/search.h"
+#include "sim/floating.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,16 +14,16 @@
 namespace spindrift::LANES {
 
 // Owns the objects and finds who touches whom.
-template <class Device> class Objects {
+template <class Device> class Objects : public Part {
 public:
-    explicit Objects(Device& device) : device_(device) {}
-
-    int count() const { return int(sample_.size()); }
-
-    // Objects at their places in the scene, for good; `solidsFloat`: some that they may push.
-    void place(const Scene& scene, bool solidsFloat) {
-        sample_ = sampleObjects(scene);
+    Objects(Flow<Device>& flow, Solids<Device>& solids, Floating<Device>& floating)
+        : flow_(flow),
+          device_(flow.device),
+          solids_(solids),
+          floating_(floating),
+          sample_(sampleObjects(flow.scene)) {
         if (count() == 0) return;
+        const Scene& scene = flow.scene;
         fillVectors(home_, sample_.positions);
         fill(mass_, std::vector<real>(sample_.masses.begin(), sample_.masses.end()));
         fill(radius_, std::vector<real>(sample_.radii.begin(), sample_.radii.end()));
@@ -41,14 +41,20 @@ public:
         }
         fill(grips_, grips), fill(keys_, keys);
         given_.resize(vectorSize(padded()));
-        if (solidsFloat) press_.resize(vectorSize(padded())), pressedBy_.resize(size_t(padded()));
+        if (solids.floats())
+            press_.resize(vectorSize(padded())), pressedBy_.resize(size_t(padded()));
         acceleration_.resize(vectorSize(padded())), torn_.resize(sample_.size()),
             slot_.resize(sample_.size()), speed_.resize(1);
         bondEnds();
     }
-    // At the beginning, or where a run stands.
-    void restart(const Scene& scene, const ObjectState& state) {
+    int count() const { return int(sample_.size()); }
+
+    // --- as a part (part.h) ---
+
+    void restart(const RunState& run) {
         if (count() == 0) return;
+        const Scene& scene = flow_.scene;
+        const ObjectState& state = run.objects;
         std::vector<Vec3> velocities;
         for (const int object : sample_.objects)
             velocities.push_back(scene.objects[size_t(object)].velocity);
@@ -71,83 +77,71 @@ public:
         sorted_.upload(places, {}, {}, ids);
         device_.forEach(sorted_.slots(), FetchPlaces{particles(), sorted_.view()});
     }
-    ObjectState state() const {
-        ObjectState s;
+    void save(RunState& run) {
+        if (count() == 0) return;
+        ObjectState& s = run.objects;
         s.positions = vectors(position_), s.velocities = vectors(velocity_);
         std::vector<BondEnd> bonds(bonds_.size());
         device_.download(bonds.data(), bonds_.data(), bonds.size());
         for (const BondEnd& b : bonds) s.broken.push_back(b.stiffness <= 0);
-        return s;
     }
-
-    void sort(const Grid& grid) {
+    void refresh() {
+        if (count() > 0) setLaw(flow_.scene, flow_.parameters.soundSpeed);
+    }
+    // s, that springs and contacts bear.
+    double longestStep() const { return longestStep_; }
+    void sorted() {
+        if (count() == 0) return;
         device_.forEach(sorted_.slots(), FetchPlaces{particles(), sorted_.view()});
-        sorted_.sort(grid);
+        sorted_.sort(flow_.search.grid());
         resizeSurface();
         placeSurface();
         boxes_.compute(device_, sorted_.view());
-    }
-    void placeSurface() { device_.forEach(sorted_.slots(), PlaceSurface{particles(), surface()}); }
-    int side() const { return sorted_.side(); }
-    void flip() { sorted_.flip(); }
-    void invalidateLists(const Particles& fluid) {
-        objectsNearFluid_.invalidate(fluid);
+        objectsNearFluid_.invalidate(flow_.fluid.view());
         for (NeighbourLists* lists : {&fluidNearObjects_, &objectsNearObjects_})
             lists->invalidate(sorted_.view());
     }
-    void findNeighbours(const Grid& grid, float skin, const Boxes& fluidBoxes,
-                        const int* fluidCells) {
-        const float reach = reach_ + skin;
+    void findNeighbours() {
+        if (count() == 0) return;
+        const Grid& grid = flow_.search.grid();
+        const float reach = reach_ + flow_.search.skin();
+        const Boxes& fluidBoxes = flow_.search.fluidBoxes();
+        const int* fluidCells = flow_.fluid.cellStart();
         objectsNearFluid_.build(device_, grid, reach, fluidBoxes, nullptr, boxes_,
                                 sorted_.cellStart());
         fluidNearObjects_.build(device_, grid, reach, boxes_, nullptr, fluidBoxes, fluidCells);
         objectsNearObjects_.build(device_, grid, reach, boxes_, nullptr, boxes_,
                                   sorted_.cellStart());
     }
-    int64_t listBytes() const {
+    int64_t bytes() const {
         return objectsNearFluid_.bytes() + fluidNearObjects_.bytes() + objectsNearObjects_.bytes();
     }
+    // The fastest of them counts as one of the fluid.
+    void findSpeed() {
+        if (count() == 0) return;
+        device_.reduce(
+            count(),
+            FindObjectSpeed{particles(), flow_.clock.data(), real(driver_ ? drivenSpeed_ : 0)},
+            speed_.data());
+        device_.forEach(1, TakeFaster{flow_.extremes.data(), speed_.data()});
+    }
+    void addForces(Plan& plan, Initial initial) {
+        plan.add(
+            "contact", [this] { touch(); }, initial, whyNone());
+    }
+    void move(Plan& plan, ShareOfStep share) {
+        if (share.drifts)
+            plan.add(
+                "objects", [this] { moveOn(); }, Initial::No, whyNone());
+    }
 
-    // Forces on fluid and objects where they are. `bodies`: solids, where any float.
-    void touch(const View& v, const RigidBody* bodies, Springs springs) {
-        const ContactView c = contactView(v);
-        device_.forEach(v.fluid.slots, PushFluid{c});
-        device_.forEach(sorted_.slots(), PushObjects{c});
-        if (driver_) return;
-        device_.forEach(count(), StretchBonds{v,
-                                              particles(),
-                                              {force_.data()},
-                                              materials_.data(),
-                                              cuts_.data(),
-                                              int(cuts_.size()),
-                                              bodies,
-                                              springs,
-                                              presses()});
-    }
-    // What objects do to a solid that floats; not where a driver moves them.
-    SumPresses pressesOn(const View& v, int solid) { return {v, particles(), presses(), solid}; }
-    // `dragged`: the solid that the mouse holds, -1: none.
-    void move(const View& v, const RigidBody* bodies, int dragged) {
-        if (driver_)
-            device_.forEach(count(), FollowDriver{v.state,
-                                                  particles(),
-                                                  {force_.data()},
-                                                  {target_.data()},
-                                                  {impulse_.data()},
-                                                  arrival_});
-        else
-            device_.forEach(
-                count(),
-                MoveObjects{
-                    v, particles(), grips_.data(), keys_.data(), bodies, dragged, {given_.data()}});
-        placeSurface();
-    }
-    // What that solid gave to them.
-    SumStops stops() { return {particles(), {given_.data()}}; }
-    // From `time` on; null: bonds and grips again.
-    void drive(ObjectDriver* driver, double time, Vec3 origin) {
-        driver_ = driver, origin_ = toDouble(origin);
+    // What is put in order with the fluid.
+    ParticleSet<Device>& surfaceSet() { return sorted_; }
+    // From now on; null: bonds and grips again.
+    void drive(ObjectDriver* driver) {
+        driver_ = driver, origin_ = toDouble(flow_.scene.domain.min);
         if (!driver) return;
+        const double time = flow_.readClock().time;
         for (auto* field : {&target_, &impulse_}) field->resize(vectorSize(padded()));
         fillVectors(acceleration_, std::vector<Vec3>(sample_.size()));
         exchanged_ = time, arrival_ = -1;
@@ -176,19 +170,14 @@ public:
         exchanged_ = time, arrival_ = time + driver_->interval();
         return true;
     }
-    void findSpeed(const StepState* state, Extremes* fluid) {
-        device_.reduce(count(),
-                       FindObjectSpeed{particles(), state, real(driver_ ? drivenSpeed_ : 0)},
-                       speed_.data());
-        device_.forEach(1, TakeFaster{fluid, speed_.data()});
-    }
     void writeVertices(Vertex* out, float fluidSpacing) {
         device_.forEach(count(), WriteObjectVertices{particles(), out, real(fluidSpacing / 2)});
     }
 
+private:
+    const char* whyNone() const { return count() > 0 ? "" : "there are no objects"; }
     // Of contacts, as live knobs say; `sound` in m/s.
     void setLaw(const Scene& scene, double sound) {
-        if (count() == 0) return;
         const Contact& knobs = scene.contact;
         const double m = particleMass(scene), h = supportRadius(scene) / 2, rate = 0.4 * sound / h;
         const double k = knobs.stiffness > 0 ? double(knobs.stiffness) : m * rate * rate,
@@ -209,10 +198,49 @@ public:
         reach_ = std::max(knobs.influence * (scene.simulation.spacing / 2 + largest), 2 * largest);
         longestStep_ = stableStep(scene, k * std::exp(double(knobs.steepness)));
     }
-    // s, that springs and contacts bear.
-    double longestStep() const { return longestStep_; }
-
-private:
+    void placeSurface() { device_.forEach(sorted_.slots(), PlaceSurface{particles(), surface()}); }
+    // Forces on fluid and objects where they are, and on solids that float.
+    void touch() {
+        const View v = flow_.view();
+        const ContactView c = contactView(v);
+        device_.forEach(v.fluid.slots, PushFluid{c});
+        device_.forEach(sorted_.slots(), PushObjects{c});
+        if (driver_) return;
+        device_.forEach(count(), StretchBonds{v,
+                                              particles(),
+                                              {force_.data()},
+                                              materials_.data(),
+                                              cuts_.data(),
+                                              int(cuts_.size()),
+                                              floating_.bodies(),
+                                              floating_.springs(),
+                                              presses()});
+        if (solids_.floats())
+            floating_.addTouches(count(), [&](int solid) {
+                return SumPresses{v, particles(), presses(), solid};
+            });
+    }
+    void moveOn() {
+        const View v = flow_.view();
+        if (driver_)
+            device_.forEach(count(), FollowDriver{v.state,
+                                                  particles(),
+                                                  {force_.data()},
+                                                  {target_.data()},
+                                                  {impulse_.data()},
+                                                  arrival_});
+        else
+            device_.forEach(count(), MoveObjects{v,
+                                                 particles(),
+                                                 grips_.data(),
+                                                 keys_.data(),
+                                                 floating_.bodies(),
+                                                 floating_.held(),
+                                                 {given_.data()}});
+        placeSurface();
+        if (floating_.held() >= 0 && !driver_)
+            floating_.feelStops(count(), SumStops{particles(), {given_.data()}});
+    }
     ObjectParticles particles() const {
         return {count(),        {position_.data()}, {velocity_.data()}, {acceleration_.data()},
                 {home_.data()}, {mass_.data()},     {radius_.data()},   {torn_.data()},
@@ -311,7 +339,10 @@ private:
         device_.upload(buffer.data(), host.data(), host.size());
     }
 
+    Flow<Device>& flow_;
     Device& device_;
+    Solids<Device>& solids_;
+    Floating<Device>& floating_;
     ObjectSample sample_;
     std::vector<BondEnd> whole_;  // as at the start
     std::vector<int> firstBondOnHost_;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/vertex.h"
-#include "sim/solids.h"
+#include "sim/solid_passes.h"
 
 namespace spindrift::LANES {
 

@@ -2,55 +2,36 @@
 #pragma once
 
 #include "device/buffer.h"
+#include "core/error.h"
 #include "sim/output_passes.h"
+#include "sim/particle_fields.h"
 #include "sim/passes.h"
 #include "sim/simulation.h"
 
+#include <algorithm>
+#include <array>
+#include <iterator>
 #include <numeric>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 namespace spindrift::LANES {
 
-enum class Kind { Fluid, Walls, Objects };  // of objects just places: the rest is elsewhere
-
 template <class Device> class ParticleSet {
 public:
-    ParticleSet(Device& device, Kind kind) : device_(device), kind_(kind) {}
+    ParticleSet(Device& device, Kind kind) : device_(device), holds_{} {
+        holds_.kind = kind, holds_.velocity = holds_.density = kind == Kind::Fluid;
+    }
 
     int slots() const { return slots_; }
     const int* cellStart() const { return cellStart_.data(); }
 
     Particles view() const {
-        return {slots_,
-                id_.data(),
-                {position_.data()},
-                {velocity_.data()},
-                {acceleration_.data()},
-                {addedForce_.data()},
-                {normal_.data()},
-                {normalLength_.data()},
-                {density_.data()},
-                {inverseDensity_.data()},
-                {weighsViscosity_ ? viscousVolume_.data() : inverseDensity_.data()},
-                {pressureOverRho2_.data()},
-                {mass_.data()},
-                {outward_.data()},
-                {ownVelocity_.data()},
-                {ownAcceleration_.data()},
-                {slip_.data()},
-                {slipVelocity_.data()},
-                {flowVelocity_.data()},
-                {densityRate_.data()},
-                {shiftVelocity_.data()},
-                {shiftAcceleration_.data()},
-                {kept_.position.data()},
-                {kept_.velocity.data()},
-                {kept_.density.data()},
-                {massRatio_.data()},
-                {viscosity_.data()},
-                {timeBin_.data()},
-                active_.data()};
+        Particles p = shownIn(now_);
+        p.id = id_.data();
+        if (!holds_.viscousVolume) p.viscousVolume = p.inverseDensity;
+        return p;
     }
 
     // Takes over particles with ids firstId, firstId + 1, ...; boundary particles have no
@@ -72,26 +53,26 @@ public:
             id[i] = ids[i];
             for (int k = 0; k < 3; ++k) {
                 x[vectorOffset(i, k)] = positions[i][k];
-                if (kind_ == Kind::Fluid) u[vectorOffset(i, k)] = velocities[i][k];
+                if (kind() == Kind::Fluid) u[vectorOffset(i, k)] = velocities[i][k];
             }
         }
-        device_.upload(position_.data(), x.data(), x.size());
-        if (kind_ == Kind::Fluid) device_.upload(velocity_.data(), u.data(), u.size());
-        if (carriesDensity_) device_.upload(density_.data(), rho.data(), rho.size());
+        upload(&Particles::position, x);
+        if (kind() == Kind::Fluid) upload(&Particles::velocity, u);
+        if (holds_.densityRate) upload(&Particles::density, rho);
         device_.upload(id_.data(), id.data(), id.size());
     }
 
     // What each particle of a mixture is, by ids from 0 on: see View.
     void fillMixture(const std::vector<float>& massRatios, const std::vector<float>& viscosities) {
-        mixture_ = true;
+        holds_.mixture = true;
         resize(slots_);
         if (sortedId_.size() > 0) resizeSorted(slots_);  // a recorded sort can't make room
         const std::vector<int> id = copy(id_);
         std::vector<real> ratio(slots_, 1), mu(slots_, 0);
         for (int i = 0; i < slots_; ++i)
             if (id[i] >= 0) ratio[i] = massRatios[id[i]], mu[i] = viscosities[id[i]];
-        device_.upload(massRatio_.data(), ratio.data(), ratio.size());
-        device_.upload(viscosity_.data(), mu.data(), mu.size());
+        upload(&Particles::massRatio, ratio);
+        upload(&Particles::viscosity, mu);
     }
 
     // Particles of one cell end up beside each other, cells of one row too.
@@ -103,20 +84,7 @@ public:
         const int slots = device_.sortByCell(slots_, key_.data(), rows, grid.cells.x, clusterSize,
                                              cellStart_.data(), order_);
         resizeSorted(slots);
-        Particles sorted = view();
-        sorted.id = sortedId_.data();
-        sorted.position = {sortedPosition_.data()};
-        sorted.velocity = {sortedVelocity_.data()};
-        sorted.density = {sortedDensity_.data()};
-        sorted.keptPosition = {sortedKept_.position.data()};
-        sorted.keptVelocity = {sortedKept_.velocity.data()};
-        sorted.keptDensity = {sortedKept_.density.data()};
-        sorted.massRatio = {sortedMassRatio_.data()};
-        sorted.viscosity = {sortedViscosity_.data()};
-        sorted.timeBin = {sortedTimeBin_.data()};
-        sorted.acceleration = {sortedAcceleration_.data()};
-        sorted.densityRate = {sortedDensityRate_.data()};
-        device_.forEach(slots, Reorder{order_.data(), view(), sorted});
+        device_.forEach(slots, Reorder{order_.data(), id_.data(), sortedId_.data(), carried()});
         flip();
         resize(slots);
     }
@@ -124,83 +92,54 @@ public:
     // because it is the host's work. `side` says which buffers are the particles now.
     void flip() {
         id_.swap(sortedId_);
-        position_.swap(sortedPosition_);
-        if (kind_ == Kind::Fluid) velocity_.swap(sortedVelocity_);
-        if (sortsDensity()) density_.swap(sortedDensity_);
-        if (hasTimeBins())
-            timeBin_.swap(sortedTimeBin_), acceleration_.swap(sortedAcceleration_),
-                densityRate_.swap(sortedDensityRate_);
-        massRatio_.swap(sortedMassRatio_), viscosity_.swap(sortedViscosity_);
-        kept_.position.swap(sortedKept_.position);
-        kept_.velocity.swap(sortedKept_.velocity);
-        kept_.density.swap(sortedKept_.density);
+        forFields([&](const ParticleField& field, size_t k) {
+            if (field.sorted(holds_)) now_[k].swap(sorted_[k]);
+        });
         side_ = 1 - side_;
     }
     int side() const { return side_; }
-    // Boundary particles have a velocity only where fluid sticks to them, a density only where its
-    // gradient is wanted. The first call says true: what they carry is to be filled in.
-    bool carryVelocity() {
-        const bool isNew = !std::exchange(carriesVelocity_, true);
-        resize(slots_);
-        return isNew;
-    }
-    void move() { moves_ = true, resize(slots_); }
-    void accelerate() { accelerates_ = moves_ = true, resize(slots_); }
-    void letSlip() { slips_ = true, resize(slots_); }
-    bool slips() const { return slips_; }
-    void continueFlow() { continues_ = true, resize(slots_); }
-    void haveDensity() { hasDensity_ = true, resize(slots_); }
-    // Fluid's density comes from a sum, or goes from step to step with a rate; with shifting its
-    // particles leave the fluid's paths.
-    void carryDensity() { carriesDensity_ = true; }
-    void shift() { shifts_ = true; }
-    // What integrators need besides: a velocity, or all of a state.
-    void keepVelocity() { keepsVelocity_ = true; }
-    void keepState() { keepsVelocity_ = keepsState_ = true; }
-    void weighViscosity(bool weighs) {
-        weighsViscosity_ = weighs;
-        if (!weighs) viscousVolume_.release();
-        resize(slots_);
-    }
-    // Where each began its step, for collisions.
-    void keepPlace() { keepsPlace_ = true; }
-    // Sums of pairs for forces that come on top of the others; normals of the surface.
+    // What it is to hold (Holdings). carryVelocity() says whether that is new: what boundary
+    // particles carry is to be filled in.
+    bool carryVelocity() { return !std::exchange(holds_.velocity, true) && (resize(slots_), true); }
+    void move() { holds_.moves = true, resize(slots_); }
+    void accelerate() { holds_.accelerates = holds_.moves = true, resize(slots_); }
+    void continueFlow() { holds_.continues = true, resize(slots_); }
+    void letSlip() { holds_.slips = true, resize(slots_); }
+    bool slips() const { return holds_.slips; }
+    void haveDensity() { holds_.density = true, resize(slots_); }
+    void carryDensity() { holds_.densityRate = true; }
+    void shift() { holds_.shifts = true; }
+    void keepVelocity() { holds_.keepsVelocity = true; }
+    void keepState() { holds_.keepsVelocity = holds_.keepsState = true; }
+    void keepPlace() { holds_.keepsPlace = true; }
+    void weighViscosity(bool weighs) { holds_.viscousVolume = weighs, resize(slots_); }
     void addForces(bool pairs, bool normals) {
-        addsPairs_ = pairs, hasNormals_ = normals;
-        if (!pairs) addedForce_.release();
-        if (!normals) normal_.release(), normalLength_.release();
+        holds_.addsPairs = pairs, holds_.normals = normals;
         resize(slots_);
     }
-    // Particles have steps of their own, or walls are but looked at where fluid is due.
-    void stepLocally(bool locally) {
-        stepsLocally_ = locally;
+    void stepInBlocks(bool blocks) {
+        holds_.timeBins = blocks;
         resize(slots_);
-        if (locally) {
-            if (sortedId_.size() > 0) resizeSorted(slots_);  // a recorded sort can't make room
-            return;
-        }
-        for (auto* b : {&timeBin_, &sortedTimeBin_, &sortedAcceleration_, &sortedDensityRate_})
-            b->release();
-        active_.release();
+        if (sortedId_.size() > 0) resizeSorted(slots_);  // a recorded sort can't make room
     }
     // Particles that never move are sorted once.
     void keepOrder() {
         sortedId_.release(), key_.release(), order_.release();
-        sortedPosition_.release(), sortedVelocity_.release();
+        for (Numbers& field : sorted_) field.release();
     }
 
     // Relative to the domain's lower corner, in the order of ids from firstId on: bit by bit what
     // upload() took, or what became of it.
     std::vector<Vec3> positions(int count, int firstId) const {
-        return inOrder(position_, count, firstId);
+        return inOrder(&Particles::position, count, firstId);
     }
     std::vector<Vec3> velocities(int count, int firstId) const {
-        return inOrder(velocity_, count, firstId);
+        return inOrder(&Particles::velocity, count, firstId);
     }
     // Empty where density is not carried.
     std::vector<float> densities(int count) const {
-        if (!carriesDensity_) return {};
-        const std::vector<real> values = copy(density_);
+        if (!holds_.densityRate) return {};
+        const std::vector<real> values = copy(now(&Particles::density));
         const std::vector<int> id = copy(id_);
         std::vector<float> out(count);
         for (int i = 0; i < slots_; ++i)
@@ -211,9 +150,11 @@ public:
     // In the order of ids, in world coordinates.
     std::vector<Particle> download(int count, Vec3 origin) const {
         std::vector<int> id = copy(id_);
-        std::vector<real> x = copy(position_), u = copy(velocity_), a = copy(acceleration_);
-        std::vector<real> rho = copy(density_), term = copy(pressureOverRho2_),
-                          ratio = copy(massRatio_);
+        std::vector<real> x = copy(now(&Particles::position)), u = copy(now(&Particles::velocity)),
+                          a = copy(now(&Particles::acceleration)),
+                          rho = copy(now(&Particles::density)),
+                          term = copy(now(&Particles::pressureOverRho2)),
+                          ratio = copy(now(&Particles::massRatio));
         const Particles host = onHost(slots_, id, x, u, a, rho, term, ratio);
         std::vector<Particle> out(count);
         for (int i = 0; i < slots_; ++i)
@@ -226,76 +167,94 @@ public:
         const int slot = int(std::find(ids.begin(), ids.end(), id) - ids.begin());
         CHECK(slot < slots_);
         const int first = slot / clusterSize * clusterSize;
-        auto vectors = [&](const Buffer<real, Device>& b) {
-            return copy(b, vectorOffset(first, 0), vectorSize(clusterSize));
+        auto vectors = [&](VectorField Particles::*field) {
+            return copy(now(field), vectorOffset(first, 0), vectorSize(clusterSize));
         };
-        auto numbers = [&](const Buffer<real, Device>& b) {
-            return copy(b, size_t(first), size_t(clusterSize));
+        auto numbers = [&](ScalarField Particles::*field) {
+            return copy(now(field), size_t(first), size_t(clusterSize));
         };
-        std::vector<real> x = vectors(position_), u = vectors(velocity_),
-                          a = vectors(acceleration_);
-        std::vector<real> rho = numbers(density_), term = numbers(pressureOverRho2_), ratio;
-        if (mixture_) ratio = numbers(massRatio_);
+        std::vector<real> x = vectors(&Particles::position), u = vectors(&Particles::velocity),
+                          a = vectors(&Particles::acceleration), rho = numbers(&Particles::density),
+                          term = numbers(&Particles::pressureOverRho2), ratio;
+        if (holds_.mixture) ratio = numbers(&Particles::massRatio);
         std::vector<int> own(ids.begin() + first, ids.begin() + first + clusterSize);
         const Particles host = onHost(clusterSize, own, x, u, a, rho, term, ratio);
         return describe(host, slot - first, origin);
     }
 
 private:
+    using Numbers = Buffer<real, Device>;
+    static constexpr size_t fieldCount = std::size(particleFields);
+    using Fields = std::array<Numbers, fieldCount>;
+
+    Kind kind() const { return holds_.kind; }
+    // f(field, its number) for each field that there is.
+    template <class F> static void forFields(const F& f) {
+        for (size_t k = 0; k < fieldCount; ++k) f(particleFields[k], k);
+    }
+    static size_t numbersIn(const ParticleField& field, int slots) {
+        return field.isVector() ? size_t(vectorSize(slots)) : size_t(slots);
+    }
     void resize(int slots) {
         slots_ = slots;
         id_.resize(slots);
-        position_.resize(vectorSize(slots));
-        if (kind_ == Kind::Objects) return;
-        pressureOverRho2_.resize(slots);
-        if (carriesVelocity_) velocity_.resize(vectorSize(slots));
-        if (hasDensity_) density_.resize(slots);
-        if (stepsLocally_) active_.resize(size_t(slots / clusterSize));
-        if (kind_ == Kind::Walls) {
-            mass_.resize(slots);
-            if (carriesVelocity_) outward_.resize(vectorSize(slots));
-            if (moves_) ownVelocity_.resize(vectorSize(slots));
-            if (accelerates_) ownAcceleration_.resize(vectorSize(slots));
-            if (continues_)
-                slip_.resize(slots), outward_.resize(vectorSize(slots)),
-                    flowVelocity_.resize(vectorSize(slots));
-            if (slips_) slip_.resize(slots), slipVelocity_.resize(vectorSize(slots));
-            return;
-        }
-        acceleration_.resize(vectorSize(slots));
-        if (addsPairs_) addedForce_.resize(vectorSize(slots));
-        if (hasNormals_) normal_.resize(vectorSize(slots)), normalLength_.resize(slots);
-        inverseDensity_.resize(slots);
-        if (weighsViscosity_) viscousVolume_.resize(slots);
-        if (carriesDensity_) densityRate_.resize(slots);
-        if (mixture_) massRatio_.resize(slots), viscosity_.resize(slots);
-        if (shifts_)
-            for (auto* field : {&shiftVelocity_, &shiftAcceleration_})
-                field->resize(vectorSize(slots));
-        if (stepsLocally_) timeBin_.resize(slots);
-        resizeKept(kept_, slots);
+        forFields([&](const ParticleField& field, size_t k) {
+            if (field.held(holds_))
+                now_[k].resize(numbersIn(field, slots));
+            else
+                now_[k].release();
+        });
+        if (holds_.timeBins)
+            active_.resize(size_t(slots / clusterSize));
+        else
+            active_.release();
     }
     void resizeSorted(int slots) {
         sortedId_.resize(slots);
-        sortedPosition_.resize(vectorSize(slots));
-        if (kind_ == Kind::Fluid) sortedVelocity_.resize(vectorSize(slots));
-        if (sortsDensity()) sortedDensity_.resize(slots);
-        if (mixture_) sortedMassRatio_.resize(slots), sortedViscosity_.resize(slots);
-        if (hasTimeBins())
-            sortedTimeBin_.resize(slots), sortedAcceleration_.resize(vectorSize(slots));
-        if (hasTimeBins() && carriesDensity_) sortedDensityRate_.resize(slots);
-        resizeKept(sortedKept_, slots);
+        forFields([&](const ParticleField& field, size_t k) {
+            if (field.sorted(holds_))
+                sorted_[k].resize(numbersIn(field, slots));
+            else
+                sorted_[k].release();
+        });
     }
-    bool hasTimeBins() const { return stepsLocally_ && kind_ == Kind::Fluid; }
-    bool sortsDensity() const { return carriesDensity_ || hasTimeBins(); }
-    struct Kept {
-        explicit Kept(Device& d) : position(d), velocity(d), density(d) {}
-        Buffer<real, Device> position, velocity, density;
-    };
-    void resizeKept(Kept& kept, int slots) const {
-        if (keepsVelocity_) kept.velocity.resize(vectorSize(slots));
-        if (keepsState_ || keepsPlace_) kept.position.resize(vectorSize(slots));
-        if (keepsState_ && carriesDensity_) kept.density.resize(slots);
+    Particles shownIn(const Fields& fields) const {
+        Particles p{};
+        p.slots = slots_, p.active = active_.data();
+        forFields([&](const ParticleField& field, size_t k) {
+            if (field.isVector())
+                p.*field.vector = {fields[k].data()};
+            else
+                p.*field.scalar = {fields[k].data()};
+        });
+        return p;
+    }
+    Carried carried() const {
+        Carried all{};
+        forFields([&](const ParticleField& field, size_t k) {
+            if (!field.sorted(holds_)) return;
+            CHECK(all.count < Carried::most);
+            all.fields[all.count++] = {now_[k].data(), sorted_[k].data(), field.isVector(),
+                                       field.isPosition(), field.empty};
+        });
+        return all;
+    }
+    template <class Field> const Numbers& now(Field Particles::*field) const {
+        size_t found = fieldCount;
+        forFields([&](const ParticleField& f, size_t k) {
+            if constexpr (std::is_same_v<Field, VectorField>) {
+                if (f.vector == field) found = k;
+            } else {
+                if (f.scalar == field) found = k;
+            }
+        });
+        return now_[found];
+    }
+    template <class Field> void upload(Field Particles::*field, const std::vector<real>& values) {
+        device_.upload(now(field).data(), values.data(), values.size());
+    }
+    template <size_t... k> static Fields makeFields(Device& device, std::index_sequence<k...>) {
+        return {((void)k, Numbers(device))...};
     }
     static Particles onHost(int slots, std::vector<int>& id, std::vector<real>& x,
                             std::vector<real>& u, std::vector<real>& a, std::vector<real>& rho,
@@ -316,8 +275,8 @@ private:
                 double(densityOf(host, i)),
                 double(pressureOf(host, i))};
     }
-    std::vector<Vec3> inOrder(const Buffer<real, Device>& field, int count, int firstId) const {
-        std::vector<real> values = copy(field);
+    std::vector<Vec3> inOrder(VectorField Particles::*field, int count, int firstId) const {
+        std::vector<real> values = copy(now(field));
         const std::vector<int> id = copy(id_);
         std::vector<Vec3> out(count);
         for (int i = 0; i < slots_; ++i) {
@@ -338,30 +297,13 @@ private:
     }
 
     Device& device_;
-    Kind kind_;
-    bool carriesVelocity_ = kind_ == Kind::Fluid, hasDensity_ = kind_ == Kind::Fluid,
-         carriesDensity_ = false, shifts_ = false, moves_ = false, accelerates_ = false,
-         slips_ = false, continues_ = false, keepsVelocity_ = false, keepsState_ = false,
-         keepsPlace_ = false, stepsLocally_ = false, addsPairs_ = false, hasNormals_ = false,
-         mixture_ = false, weighsViscosity_ = false;
+    Holdings holds_;
     int slots_ = 0, side_ = 0;
     Buffer<int, Device> id_{device_}, sortedId_{device_}, key_{device_}, order_{device_},
         cellStart_{device_};
-    Buffer<real, Device> position_{device_}, velocity_{device_}, acceleration_{device_},
-        addedForce_{device_}, normal_{device_}, normalLength_{device_};
-    Buffer<real, Device> sortedPosition_{device_}, sortedVelocity_{device_},
-        sortedDensity_{device_};
-    Buffer<real, Device> densityRate_{device_}, shiftVelocity_{device_},
-        shiftAcceleration_{device_};
-    Kept kept_{device_}, sortedKept_{device_};
-    Buffer<real, Device> massRatio_{device_}, viscosity_{device_}, sortedMassRatio_{device_},
-        sortedViscosity_{device_};
     Buffer<uint8_t, Device> active_{device_};
-    Buffer<real, Device> timeBin_{device_}, sortedTimeBin_{device_}, sortedAcceleration_{device_},
-        sortedDensityRate_{device_};
-    Buffer<real, Device> density_{device_}, inverseDensity_{device_}, pressureOverRho2_{device_},
-        mass_{device_}, outward_{device_}, ownVelocity_{device_}, ownAcceleration_{device_},
-        slip_{device_}, slipVelocity_{device_}, flowVelocity_{device_}, viscousVolume_{device_};
+    Fields now_ = makeFields(device_, std::make_index_sequence<fieldCount>{}),
+           sorted_ = makeFields(device_, std::make_index_sequence<fieldCount>{});
 };
 
 }  // namespace spindrift::LANES

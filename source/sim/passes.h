@@ -29,35 +29,38 @@ struct FindCell {
     }
 };
 
-// Moves what a particle carries from step to step to its new slot: boundary particles no velocity,
-// and density only where it is not summed up anew.
+// Fields that go along as particles are put in order.
+struct Carried {
+    static constexpr int most = 12;
+    struct Field {
+        real *from, *to;
+        bool isVector, isPosition;
+        real empty;
+    } fields[most];
+    int count;
+};
+
+// Moves what a particle carries from step to step to its new slot.
 struct Reorder {
     using Index = int;
     const int* order;
-    Particles from, to;
+    const int* id;
+    int* sortedId;
+    Carried carried;
     HD void operator()(int i) const {
         const int s = order[i];
-        to.id[i] = s < 0 ? -1 : from.id[s];
-        // Empty slots: so far out that no distance to anybody is small or equal.
+        sortedId[i] = s < 0 ? -1 : id[s];
+        // Empty slots: so far out that no distance to any particle is small or equal.
         const real far = 2 * farAway * real(1 + i % 4);
-        store(to.position, i, s < 0 ? Vector<real>{far, far, far} : load(from.position, s));
-        if (to.timeBin.data) store(to.timeBin, i, s < 0 ? resting : load(from.timeBin, s));
-        if (to.timeBin.data)
-            store(to.acceleration, i, s < 0 ? Vector<real>{0, 0, 0} : load(from.acceleration, s));
-        if (to.timeBin.data && to.densityRate.data)
-            store(to.densityRate, i, s < 0 ? real(0) : load(from.densityRate, s));
-        if (to.velocity.data)
-            store(to.velocity, i, s < 0 ? Vector<real>{0, 0, 0} : load(from.velocity, s));
-        if (to.density.data) store(to.density, i, s < 0 ? real(0) : load(from.density, s));
-        if (to.massRatio.data) store(to.massRatio, i, s < 0 ? real(1) : load(from.massRatio, s));
-        if (to.viscosity.data) store(to.viscosity, i, s < 0 ? real(0) : load(from.viscosity, s));
-        if (to.keptPosition.data)
-            store(to.keptPosition, i,
-                  s < 0 ? Vector<real>{far, far, far} : load(from.keptPosition, s));
-        if (to.keptVelocity.data)
-            store(to.keptVelocity, i, s < 0 ? Vector<real>{0, 0, 0} : load(from.keptVelocity, s));
-        if (to.keptDensity.data)
-            store(to.keptDensity, i, s < 0 ? real(0) : load(from.keptDensity, s));
+        for (int k = 0; k < carried.count; ++k) {
+            const Carried::Field& f = carried.fields[k];
+            const real empty = f.isPosition ? far : f.empty;
+            if (f.isVector)
+                store(VectorField{f.to}, i,
+                      s < 0 ? Vector<real>{empty, empty, empty} : load(VectorField{f.from}, s));
+            else
+                store(ScalarField{f.to}, i, s < 0 ? empty : load(ScalarField{f.from}, s));
+        }
     }
 };
 
@@ -333,9 +336,8 @@ template <class Kernel, Lists lists, class Terms, Forces role = Forces::All> str
 template <class Kernel, Lists which, class... Terms, Forces role>
 struct ComputeForces<Kernel, which, TermList<Terms...>, role> {
     static constexpr Lists lists = which;
-    static constexpr uint8_t activeFrom = which == Lists::BuildInner
-                                              ? SleepingHalo
-                                              : Active;  // the density's rate needs the inner lists
+    static constexpr uint8_t activeFrom =
+        which == Lists::BuildInner ? SleepingHalo : Active;  // later passes need the inner lists
     using Index = ICluster;
     using R = Real<ICluster>;
     static constexpr unsigned needs = TermList<Terms...>::needs;

@@ -1,5 +1,14 @@
-// The vertices that the screen shows. Included by simulation_on.h.
+// The vertices that the screen shows.
 #pragma once
+
+#include "sim/flow.h"
+#include "sim/output_passes.h"
+#include "sim/surface.h"
+
+#include <algorithm>
+#include <numeric>
+#include <type_traits>
+#include <vector>
 
 namespace spindrift::LANES {
 
@@ -27,52 +36,46 @@ inline Range withoutOutliers(ValueRange range, const std::vector<int>& counts, b
     return {range.low + bin * float(low), std::min(range.high, range.low + bin * float(high + 1))};
 }
 
-template <class Device>
-Range SimulationOn<Device>::writeVertices(Vertex* out, ColorBy by, int walls) {
-    const View v = view();
-    if (walls > 0)
-        device_.forEach(v.walls.slots,
-                        WriteWallVertices{v, solids_.home(), out,
-                                          fluidCount_ + solidParticleCount(), fluidCount_ + walls});
-    if (objects_.count() > 0)
-        objects_.writeVertices(out + fluidCount_ + walls, scene_.simulation.spacing);
+template <class Value, class Device> Range write(Device& device, const Particles& p, Vertex* out) {
+    const auto range = device.template sum<ValueRange>(p.slots, WriteVertices<Value>{p, out});
+    if (!(range.high > range.low)) return {range.low, range.high};
+    const std::vector<int> counts = device.histogram(p.slots, CountValues<Value>{p, range});
+    return withoutOutliers(range, counts, std::is_same_v<Value, DensityValue>);
+}
+
+// Found when a picture asks. (With block time steps not where fluid rests: lists are missing
+// there.)
+template <class Device> Range writeSurface(Flow<Device>& flow, Vertex* out) {
+    flow.showsSurface = true;
+    flow.addBuffers();
+    flow.template onPairsOrFluid<ComputeNormals>();
+    flow.template onFluid<TagSurface>();
+    flow.template onPairsOrFluid<LeaveOutSpray>();
+    return write<SurfaceValue>(flow.device, flow.fluid.view(), out);
+}
+
+template <class Device> Range writeFluid(Flow<Device>& flow, Vertex* out, ColorBy by) {
+    const Particles p = flow.fluid.view();
+    Device& device = flow.device;
     switch (by) {
         case ColorBy::Plain:
-            return write<PlainValue>(v.fluid, out);
+            return write<PlainValue>(device, p, out);
         case ColorBy::Velocity:
-            return write<SpeedValue>(v.fluid, out);
+            return write<SpeedValue>(device, p, out);
         case ColorBy::Pressure:
-            return write<PressureValue>(v.fluid, out);
+            return write<PressureValue>(device, p, out);
         case ColorBy::Density:
-            return write<DensityValue>(v.fluid, out);
+            return write<DensityValue>(device, p, out);
         case ColorBy::Acceleration:
-            return write<AccelerationValue>(v.fluid, out);
+            return write<AccelerationValue>(device, p, out);
         case ColorBy::Id:
-            return write<IdValue>(v.fluid, out);
+            return write<IdValue>(device, p, out);
         case ColorBy::Fluid:
-            return write<FluidValue>(v.fluid, out);
+            return write<FluidValue>(device, p, out);
         case ColorBy::Surface:
-            return writeSurface(out);
+            return writeSurface(flow, out);
     }
     return {0, 0};
-}
-
-// Found when somebody looks. (With local steps not where fluid rests: lists are missing there.)
-template <class Device> Range SimulationOn<Device>::writeSurface(Vertex* out) {
-    showsSurface_ = true;
-    addBuffers();
-    (this->*pairPass<ComputeNormals>())();
-    onFluid<TagSurface>();
-    (this->*pairPass<LeaveOutSpray>())();
-    return write<SurfaceValue>(fluid_.view(), out);
-}
-
-template <class Device> template <class Value>
-Range SimulationOn<Device>::write(const Particles& p, Vertex* out) {
-    const auto range = device_.template sum<ValueRange>(p.slots, WriteVertices<Value>{p, out});
-    if (!(range.high > range.low)) return {range.low, range.high};
-    const std::vector<int> counts = device_.histogram(p.slots, CountValues<Value>{p, range});
-    return withoutOutliers(range, counts, std::is_same_v<Value, DensityValue>);
 }
 
 }  // namespace spindrift::LANES

@@ -9,13 +9,19 @@
 #include "device/omp.h"
 #include "scene/particles.h"
 #include "sim/make_simulation.h"
+#include "sim/plan.h"
 #include "sim/simulation.h"
 #include "sim/step_state.h"
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <deque>
+#include <functional>
 #include <numeric>
 #include <string>
+#include <tuple>
 #include <type_traits>
 
 #define SPINDRIFT_SIMD

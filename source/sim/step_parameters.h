@@ -1,6 +1,7 @@
 // Scene -> the constants of a step, and the grid of cells.
 #pragma once
 
+#include "scene/formulation.h"
 #include "scene/lattice.h"
 #include "scene/motion.h"
 #include "sim/kernels.h"
@@ -83,7 +84,7 @@ template <class Kernel> double latticeCorner(const Scene& s) {
 // particles' mass for the other.
 template <class Kernel>
 double calibrateMasses(const Scene& s, const LatticeSums& sums, StepParameters& c) {
-    if (s.simulation.formulation == Formulation::Classic) {
+    if (factsOf(s).isHistorical) {
         c.selfWeight = 0;
         c.wallFactor = real(1.4);
         c.wallMassFloor = 0;
@@ -194,9 +195,8 @@ StepParameters makeStepParameters(const Scene& s, const FluidExtent& fluid) {
     // On its lattice a linear pressure has its exact gradient and a parabolic velocity its exact
     // Laplacian, as the lattice has the rest density; without this, at R = 2.6 dx, the one is 3 %,
     // the other 4 % too small.
-    const LatticeSums sums = s.simulation.formulation == Formulation::Classic
-                                 ? LatticeSums{1, 1, 1, 1, 1}
-                                 : latticeSums<Kernel>(s);
+    const LatticeSums sums =
+        factsOf(s).isHistorical ? LatticeSums{1, 1, 1, 1, 1} : latticeSums<Kernel>(s);
     const double mass = calibrateMasses<Kernel>(s, sums, c);
     const int d = s.simulation.dimensions;
     c.kernelScale = real(mass * Kernel::norm(d) / std::pow(R, d));

@@ -5,6 +5,7 @@
 // and multiplied once, at the end of the pass.
 #pragma once
 
+#include "scene/formulation.h"
 #include "scene/scene.h"
 #include "sim/kernels.h"
 #include "sim/neighbours.h"
@@ -183,8 +184,7 @@ template <ViscosityForm form> struct LaminarViscosity {
     static constexpr const char* name =
         form == ViscosityForm::Morris ? "laminar viscosity, Morris" : "laminar viscosity, Monaghan";
     static const char* skipped(const Scene& s) {
-        if (s.simulation.formulation == Formulation::Classic)
-            return "the classic formulation has another one";
+        if (factsOf(s).isHistorical) return "the classic formulation has another one";
         if (isMultiFluid(s)) return "each fluid of the mixture has its own";
         if (!(s.fluid.viscosity > 0)) return "fluid.viscosity is 0";
         return form == viscosityForm(s) ? "" : whyViscosityForm(s);
@@ -211,10 +211,7 @@ struct ArtificialViscosity {
     static constexpr unsigned needs = Velocity | InverseDensity | OwnVelocity;
     static constexpr const char* name = "artificial viscosity";
     static const char* skipped(const Scene& s) {
-        if (s.simulation.formulation == Formulation::Classic)
-            return "the classic formulation has none";
-        if (s.simulation.formulation == Formulation::TransportVelocity)
-            return "transport_velocity does without";
+        if (!factsOf(s).takesOthers) return "simulation.formulation does without";
         if (isMultiFluid(s)) return "each fluid of the mixture has its own";
         return s.fluid.artificialViscosity > 0 ? "" : "fluid.artificial_viscosity is 0";
     }
@@ -282,8 +279,7 @@ struct ClassicViscosity {
     static constexpr unsigned needs = Velocity;
     static constexpr const char* name = "classic viscosity";
     static const char* skipped(const Scene& s) {
-        if (s.simulation.formulation != Formulation::Classic)
-            return "only the classic formulation has it";
+        if (!factsOf(s).isHistorical) return "only the classic formulation has it";
         return s.fluid.viscosity > 0 ? "" : "fluid.viscosity is 0";
     }
     template <class R, class A> HD static void add(const StepParameters& c, const Pair<R>& p,

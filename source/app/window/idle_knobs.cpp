@@ -1,4 +1,5 @@
 #include "app/window/idle_knobs.h"
+#include "scene/formulation.h"
 
 namespace spindrift {
 
@@ -15,7 +16,6 @@ const char* whyTimeIsIdle(const Scene& s, const std::string& path) {
 
 const char* whyFluidIsIdle(const Scene& s, const std::string& path) {
     const Fluid& f = s.fluid;
-    const Formulation formulation = s.simulation.formulation;
     if ((path == "fluid.sound_speed" || path == "fluid.speed_ratio") && f.stiffness > 0)
         return "fluid.stiffness says it";
     if (path == "fluid.speed_ratio" && f.soundSpeed > 0) return "fluid.sound_speed says it";
@@ -23,20 +23,17 @@ const char* whyFluidIsIdle(const Scene& s, const std::string& path) {
         return "fluid.equation_of_state is linear";
     if (path == "fluid.density_diffusion" && !carriesDensity(s))
         return "density is summed up, not carried";
-    if (path == "fluid.shifting" && !shiftsParticles(s) && formulation != Formulation::DeltaPlus &&
-        formulation != Formulation::TransportVelocity)
+    if (path == "fluid.shifting" && !shiftsParticles(s))
         return "simulation.formulation is neither delta_plus nor transport_velocity";
-    if (path == "fluid.surface_tension" && formulation != Formulation::DeltaPlus)
+    if (path == "fluid.surface_tension" && !factsOf(s).takesTension)
         return "simulation.formulation is not delta_plus";
-    if (path == "fluid.air_density" && formulation != Formulation::Wcsph)
+    if (path == "fluid.air_density" && !factsOf(s).airResists)
         return "simulation.formulation is not wcsph";
     if ((path == "fluid.drag_coefficient" || path == "fluid.wind") && f.airDensity <= 0)
         return "fluid.air_density is 0";
-    const bool alone =
-        formulation == Formulation::Classic || formulation == Formulation::TransportVelocity;
     const bool isRare = path == "fluid.velocity_transfer" || path == "fluid.buoyancy" ||
                         path == "fluid.dissipation";
-    if (alone && (isRare || path == "fluid.artificial_viscosity"))
+    if (!factsOf(s).takesOthers && (isRare || path == "fluid.artificial_viscosity"))
         return "simulation.formulation does without";
     if (path == "fluid.buoyancy" && s.simulation.gravity == Vec3{}) return "there is no gravity";
     return "";
@@ -45,7 +42,7 @@ const char* whyFluidIsIdle(const Scene& s, const std::string& path) {
 const char* whyRestIsIdle(const Scene& s, const std::string& path) {
     if (path == "simulation.gravity_ramp" && s.simulation.gravity == Vec3{})
         return "there is no gravity";
-    if (path == "simulation.pressure_form" && s.simulation.formulation != Formulation::Wcsph)
+    if (path == "simulation.pressure_form" && !factsOf(s).meansPressure)
         return "simulation.formulation is not wcsph";
     const bool soundIsKnown = s.fluid.soundSpeed > 0 || s.fluid.stiffness > 0;  // else it follows
     if (path == "walls.velocity" && s.walls.movingFace == Face::None && soundIsKnown)

@@ -1,6 +1,6 @@
 // The rule by which blocks of fluid rest (RestBlocks), by itself: what the neighbours do is given.
 #define SPINDRIFT_REAL double
-#define LANES napsTest
+#define LANES sleepTest
 #include "sim/block_time_steps.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace spindrift {
 namespace {
 
-using namespace napsTest;
+using namespace sleepTest;
 
 // Three blocks in a row, a particle in each; 1 m/s is the speed of sound and of what rests.
 struct Row {
@@ -20,7 +20,7 @@ struct Row {
     std::array<double, 3> speed2{}, timeBin{};
     alignas(32) std::array<double, 12> velocity{};
     StepState clock;
-    napsTest::View v{};
+    sleepTest::View v{};
 
     Row() {
         v.fluid.slots = 3, v.fluid.id = ids.data(), v.fluid.timeBin = {timeBin.data()},
@@ -40,7 +40,7 @@ struct Row {
     }
     bool sleeps(int b) const { return timeBin[b] < 0; }
     // How many decisions the last block sleeps for.
-    int nextNap(std::array<double, 3> speed, int most = 2 * longestSleep) {
+    int nextSleep(std::array<double, 3> speed, int most = 2 * longestSleep) {
         while (!sleeps(2)) decide(speed);
         int decisions = 0;
         for (; sleeps(2) && decisions < most; ++decisions) decide(speed);
@@ -64,26 +64,26 @@ TEST(Sleep, GrowWhileNothingComesOfThem) {
     const std::array<double, 3> speed{2, 0.9, 0.9};
     int expected = firstSleep;
     for (int k = 0; k < 9; ++k, expected = std::min(2 * expected, longestSleep))
-        EXPECT_EQ(row.nextNap(speed), expected - calmDecisions + 1) << k;
+        EXPECT_EQ(row.nextSleep(speed), expected - calmDecisions + 1) << k;
     EXPECT_EQ(expected, longestSleep);
 }
 
 TEST(Sleep, EndWhenSomethingFastComesNearAndAreShortAgain) {
     Row row;
     const std::array<double, 3> calm{2, 0.9, 0.9};
-    for (int k = 0; k < 4; ++k) row.nextNap(calm);
+    for (int k = 0; k < 4; ++k) row.nextSleep(calm);
     while (!row.sleeps(2)) row.decide(calm);
     row.decide({2, 3.9, 0});
     EXPECT_TRUE(row.sleeps(2)) << "slower than what wakes";
     row.decide({2, 4.1, 0});
     EXPECT_FALSE(row.sleeps(2));
-    EXPECT_EQ(row.nextNap(calm), firstSleep - calmDecisions + 1);
+    EXPECT_EQ(row.nextSleep(calm), firstSleep - calmDecisions + 1);
 }
 
 // Nobody is awake: nobody wakes.
 TEST(Sleep, LastForEverWhereAllRest) {
     Row row;
-    EXPECT_EQ(row.nextNap({0.5, 0.5, 0.5}, longestSleep + 1), longestSleep + 1);
+    EXPECT_EQ(row.nextSleep({0.5, 0.5, 0.5}, longestSleep + 1), longestSleep + 1);
 }
 
 }  // namespace
