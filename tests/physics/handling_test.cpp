@@ -51,6 +51,27 @@ TEST_P(Handled, AtRandom) {
     }
 }
 
+// What the judge says when the first particle is somewhere else, m from the domain's corner, or
+// faster.
+std::string judged(const Scene& scene, Vec3 place, Vec3 velocity) {
+    const auto sound = makeSimulation(scene);
+    HandlingJudge judge(scene, *sound);
+    RunState state = sound->state();
+    state.particles.positions[0] = place, state.particles.velocities[0] = velocity;
+    return judge.look(*makeSimulation(scene, state), 1);
+}
+
+TEST(HandlingJudge, SeesWhatIsWrong) {
+    const Scene artery = coarse("artery");
+    const Vec3 inside{0.08f, 0.03f, 0.06f}, beside{0.08f, 0.03f, 0.1f}, inPlug{0.01f, 0.03f, 0.06f};
+    EXPECT_EQ(judged(artery, inside, {0, 0, 0}), "");
+    const std::pair<std::string, const char*> cases[] = {
+        {judged(artery, inside, {62, 0, 0}), "a particle at 62 m/s"},
+        {judged(artery, beside, {0, 0, 0}), "1 particles went through the wall of a tube, 0"},
+        {judged(artery, inPlug, {0, 0, 0}), "spacings in solid 0"}};
+    for (const auto& [said, words] : cases) EXPECT_NE(said.find(words), std::string::npos) << said;
+}
+
 INSTANTIATE_TEST_SUITE_P(Scenes, Handled, testing::ValuesIn(shippedScenes()),
                          [](const auto& info) { return "Scene_" + info.param; });
 
