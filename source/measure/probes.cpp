@@ -1,7 +1,7 @@
 #include "measure/probes.h"
 
 #include "core/error.h"
-#include "scene/thin_solid.h"
+#include "scene/convex.h"
 
 #include <fmt/format.h>
 
@@ -151,10 +151,8 @@ Fields mean(const Fields* f, size_t count) {
 
 }  // namespace
 
-Probes::Probes(const Scene& scene) : low_(toDouble(scene.domain.min)), period_(periodOf(scene)) {
-    for (size_t s = 0; s < scene.solids.size() && !scene.output.probes.empty(); ++s)
-        if (const double thickness = thinness(scene, scene.solids[s]); thickness > 0)
-            thin_.push_back({s, convexOf(scene.solids[s], scene.simulation.dimensions), thickness});
+Probes::Probes(const Scene& scene)
+    : sight_(scene.output.probes.empty() ? Scene{} : scene), low_(toDouble(scene.domain.min)) {
     for (const Probe& probe : scene.output.probes) {
         switch (probe.kind) {
             case ProbeKind::Point:
@@ -204,15 +202,9 @@ void Probes::addGauge(const Scene& scene, const Probe& probe) {
 }
 
 Sees Probes::sightPast(const std::vector<SolidPose>& poses) const {
-    if (thin_.empty() || poses.empty()) return {};
-    return [this, poses](Vec3d particle, Vec3d from) {
-        const Vec3d half = 0.5 * (particle - from), middle = particle - half - low_;
-        return std::none_of(thin_.begin(), thin_.end(), [&](const ThinSolid& solid) {
-            const SolidPose& pose = poses[solid.index];
-            const Vec3d arm = nearestArm(middle - pose.middle, period_);
-            return separates(solid.shape, solid.thickness, inAxes(pose, arm - half),
-                             inAxes(pose, arm + half));
-        });
+    if (!sight_.anyThin() || poses.empty()) return {};
+    return [sees = sight_.past(poses), low = low_](Vec3d particle, Vec3d from) {
+        return sees(particle - low, from - low) > 0.5;
     };
 }
 

@@ -2,7 +2,7 @@
 // Gauges in the fluid: what a scene's probes read.
 #include "measure/interpolate.h"
 #include "measure/time_series.h"
-#include "scene/convex.h"
+#include "sim/line_of_sight.h"
 
 #include <string>
 #include <vector>
@@ -35,7 +35,7 @@ public:
     // without their poses they hide nothing.
     std::vector<double> read(const std::vector<Particle>&,
                              const std::vector<SolidPose>& solids = {}) const;
-    bool looksPastSolids() const { return !thin_.empty(); }
+    bool looksPastSolids() const { return sight_.anyThin(); }
     // One line about those that solids are over where the run stands, "" when there are none:
     // points inside of one read nothing, or what is on its other side. A gauge through a solid
     // counts when it finds no water: over a beach or a block under water it is where it should be.
@@ -62,13 +62,8 @@ private:
     static double heightOf(const Gauge&, const std::vector<Particle>&, const Sees& = {});
     Sees sightPast(const std::vector<SolidPose>&) const;
 
-    struct ThinSolid {
-        size_t index;
-        Convex shape;
-        double thickness;  // m
-    };
-    std::vector<ThinSolid> thin_;
-    Vec3d low_, period_;  // m, of the domain; 0 along axes that are not periodic
+    LineOfSight sight_;
+    Vec3d low_;  // m, of the domain
     std::vector<Column> columns_;
     std::vector<Reader> readers_;
     std::vector<Fielded> fielded_;

@@ -1,14 +1,20 @@
 #include "scene/thin_solid.h"
 
+#include "scene/convex.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace spindrift {
 namespace {
 
-// m, below which fluid that stands half a spacing off each face would feel each other.
+// m, below which fluid that stands half a spacing off each face would feel each other,
+double sightOf(const Scene& scene) {
+    return (double(supportRadius(scene)) - double(scene.simulation.spacing)) * (1 - 1e-6);
+}
+// and the particles of the other face's deepest layer.
 double thickEnough(const Scene& scene) {
-    return double(supportRadius(scene)) - double(scene.simulation.spacing);
+    return (double(supportRadius(scene)) + double(scene.simulation.spacing)) * (1 - 1e-6);
 }
 
 // The axis along which a shape is the thinnest.
@@ -31,7 +37,10 @@ public:
           layers_(boundaryLayers(scene)) {}
 
     SolidSample sample() {
-        solid_.shape == Shape::Block ? addFaces() : addCells();
+        if (faceOfPlate(scene_, solid_) >= 0)
+            addFaces();
+        else
+            needsScreen(scene_, solid_) ? addCells() : addTwice();
         SolidSample all;  // those in the solid first
         for (const bool beyond : {false, true})
             for (size_t i = 0; i < out_.positions.size(); ++i) {
@@ -64,27 +73,48 @@ private:
     Cells cellsAlong(int axis, Vec3d half) const {
         if (axis == 2 && scene_.simulation.dimensions == 2) return {1, 0, dx_};
         const int count = std::max(1, int(std::round(2 * half[axis] / dx_)));
-        return {count, layers_, 2 * half[axis] / count};
+        // One that spans a periodic axis goes on as itself.
+        const bool spans = scene_.domain.periodic(axis) &&
+                           2 * half[axis] > scene_.domain.size()[axis] - 0.25 * dx_;
+        return {count, spans ? 0 : layers_, 2 * half[axis] / count};
     }
-    // Both faces of a plate have layers of their own.
+    // A plate's own lattice, once for each side, and beyond it layers like the fluid's.
     void addFaces() {
         const Vec3d half = halfExtent(solid_);
-        const int axis = thinAxis(scene_, half), b = (axis + 1) % 3, c = (axis + 2) % 3;
+        const int axis = thinAxis(scene_, half);
+        const Cells across = cellsAlong(axis, half);
+        for (int i = 0; i < across.count; ++i)
+            addLayer(axis, (i + 0.5) * across.step, across.step, true);
+        for (double depth = thickness_ + 0.5 * dx_; depth < (layers_ + 1e-3) * dx_; depth += dx_)
+            addLayer(axis, depth, dx_, false);
+    }
+    void addLayer(int axis, double depth, double width, bool inPlate) {
+        const Vec3d half = halfExtent(solid_);
+        const int b = (axis + 1) % 3, c = (axis + 2) % 3;
         const Cells alongB = cellsAlong(b, half), alongC = cellsAlong(c, half);
-        const double volume = alongB.step * alongC.step / (dx_ * dx_);
+        const double volume = alongB.step * alongC.step * width / (dx_ * dx_ * dx_);
         for (const int side : {-1, 1})
-            for (int layer = 0; layer < layers_; ++layer) {
-                const double depth = (layer + 0.5) * dx_, other = 2 * half[axis] - depth;
-                for (int i = -alongB.more; i < alongB.count + alongB.more; ++i)
-                    for (int j = -alongC.more; j < alongC.count + alongC.more; ++j) {
-                        Vec3d at, face{0, 0, 0};
-                        at[axis] = side * (half[axis] - depth), face[axis] = -side * depth;
-                        at[b] = alongB.at(i), at[c] = alongC.at(j);
-                        const bool inside =
-                            other > thickness_ / 4 && alongB.has(i) && alongC.has(j);
-                        add(at, volume, face, !inside);
-                    }
-            }
+            for (int i = -alongB.more; i < alongB.count + alongB.more; ++i)
+                for (int j = -alongC.more; j < alongC.count + alongC.more; ++j) {
+                    Vec3d at, face{0, 0, 0};
+                    at[axis] = side * (half[axis] - depth), face[axis] = -side * depth;
+                    at[b] = alongB.at(i), at[c] = alongC.at(j);
+                    add(at, volume, face, !(inPlate && alongB.has(i) && alongC.has(j)));
+                }
+    }
+
+    // What is thick enough to hide by itself has its own particles, once for each side.
+    void addTwice() {
+        const SolidSample once = sampleSolid(scene_, solid_);
+        const Vec3d low = toDouble(scene_.domain.min) - shape_.middle;
+        for (size_t i = 0; i < once.positions.size(); ++i) {
+            Vec3d at = low + toDouble(once.positions[i]);
+            if (scene_.simulation.dimensions == 2) at.z = 0;
+            const Convex::Nearest near = shape_.nearest(at);
+            const double depth = std::max(-near.distance, 0.05 * dx_);
+            add(at, once.volumes[i], -depth * near.normal, false);
+            add(at, once.volumes[i], std::max(thickness_ - depth, 0.05 * dx_) * near.normal, false);
+        }
     }
 
     // Of any other shape cells of a lattice that fits its box. For fluid on one side all of a
@@ -181,9 +211,8 @@ private:
 
 }  // namespace
 
-double thinness(const Scene& scene, const Solid& solid) {
-    if (solid.shape == Shape::Plane) return 0;
-    const double enough = thickEnough(scene);
+// Below `enough`, and along one axis only.
+static double thinnessBelow(double enough, const Scene& scene, const Solid& solid) {
     const Vec3d half = halfExtent(solid);
     int narrow = 0;
     for (int k = 0; k < scene.simulation.dimensions; ++k) narrow += 2 * half[k] < enough;
@@ -192,46 +221,24 @@ double thinness(const Scene& scene, const Solid& solid) {
     const double thickness =
         shape.mesh ? shape.scale * shape.mesh->thinnest(enough / shape.scale).thickness
                    : 2 * half[thinAxis(scene, half)];
-    return thickness < enough * (1 - 1e-6) ? thickness : 0;
+    return thickness < enough ? thickness : 0;
 }
 
-static bool separatesMesh(const Convex& shape, double grace, Vec3d p, Vec3d q) {
-    const Vec3d way = q - p;
-    const double end = length(way), shortest = 2 * grace;
-    int triangle = -1;
-    if (!(end > 0) || shape.nearest(p).distance > end) return false;
-    for (double at = 0;; at = std::min(end, at + shortest)) {
-        const double d = shape.nearestOfMesh(p + (at / end) * way, triangle).distance;
-        if (d < -grace) return true;
-        if (!(at < end)) return false;
-        at += std::max(d - shortest, 0.0);
-    }
+double thinness(const Scene& scene, const Solid& solid) {
+    if (solid.shape == Shape::Plane) return 0;
+    const double thickness = thinnessBelow(sightOf(scene), scene, solid);
+    if (thickness > 0 || solid.floats()) return thickness;
+    return thinnessBelow(thickEnough(scene), scene, solid);
 }
 
-bool separates(const Convex& shape, double thickness, Vec3d p, Vec3d q) {
-    const double grace = thickness / 8;
-    if (shape.mesh) return separatesMesh(shape, grace, p, q);
-    double in = 0, out = 1;
-    for (int k = 0; k < shape.planes; ++k) {
-        const double a = dot(shape.normal[k], p) - shape.offset[k] + grace,
-                     b = dot(shape.normal[k], q) - shape.offset[k] + grace;
-        if (a > 0 && b > 0) return false;
-        if (a > 0) in = std::max(in, a / (a - b));
-        if (b > 0) out = std::min(out, a / (a - b));
-    }
-    if (shape.radius > 0) {
-        auto across = [&](Vec3d a) {
-            return Vec3d{shape.across.x * a.x, shape.across.y * a.y, shape.across.z * a.z};
-        };
-        const Vec3d a = across(p), w = across(q - p);
-        const double w2 = std::max(dot(w, w), 1e-30), closest = -dot(a, w) / w2;
-        const Vec3d middle = a + closest * w;
-        const double chord2 = std::pow(shape.radius - grace, 2) - dot(middle, middle);
-        if (chord2 < 0) return false;
-        const double half = std::sqrt(chord2 / w2);
-        in = std::max(in, closest - half), out = std::min(out, closest + half);
-    }
-    return in <= out;
+bool needsScreen(const Scene& scene, const Solid& solid) {
+    const double thickness = thinness(scene, solid);
+    return thickness > 0 && thickness < sightOf(scene);
+}
+
+int faceOfPlate(const Scene& scene, const Solid& solid) {
+    const bool isPlate = solid.shape == Shape::Block && thinness(scene, solid) > 0;
+    return isPlate ? 2 * thinAxis(scene, halfExtent(solid)) : -1;
 }
 
 SolidSample sampleSides(const Scene& scene, const Solid& solid) {

@@ -64,9 +64,11 @@ struct ClusterBoxes {
                 least[k] = std::min(least[k],
                                     dot(arm, turned(s, s.normal[k])) - s.offset[k] - s.beyond[k]);
         }
-        // Of a solid that is periodic another image might be on the way.
+        // Of a solid that is periodic another image might be on the way. Cells of boundary
+        // particles begin half a spacing before their middles.
+        const float clear = walls ? 0.51f * all.spacing : 0;
         for (int k = 0; k < s.planes; ++k)
-            side |= least[k] > reach ? side::Far : least[k] > 0 && !all.c.periodic ? 1 << k : 0;
+            side |= least[k] > reach ? side::Far : least[k] > clear && !all.c.periodic ? 1 << k : 0;
         return side;
     }
     const uint8_t* sidesOf(uint32_t cluster) const {
@@ -102,22 +104,22 @@ struct Sight {
         }
         return true;
     }
-    // Which pairs see each other, as in ClusterList; empty slots and pairs out of reach count as
-    // if they did, unless there are no other pairs.
-    uint16_t pairsOf(int c, int j, float reach) const {
-        unsigned seen = 0;
-        bool any = false, hidden = false;
+    // How much of each other the pairs of two clusters see, as they are now: all, some, or
+    // nothing. Empty slots and pairs out of reach say nothing.
+    enum Seen { All, Some, Nothing };
+    Seen pairsOf(int c, int j, float reach, PairsApart& apart) const {
+        bool anySeen = false, anyApart = false;
         const int* wallId = between == Between::WallsAndFluid ? own.id : other.id;
         for (int l = 0; l < clusterSize * clusterSize; ++l) {
             const int a = c * clusterSize + l / clusterSize, b = j * clusterSize + l % clusterSize;
             const Vector<real> x = load(own.position, a),
                                r = imageOf(screens->c, x - load(other.position, b));
             const bool counts = own.id[a] >= 0 && other.id[b] >= 0 && dot(r, r) < reach * reach;
-            const bool isSeen = !counts || sees(*screens, wallId, between, a, b, x, r);
-            any = any || (counts && isSeen), hidden = hidden || !isSeen;
-            seen |= unsigned(isSeen) << l;
+            const real by = counts ? apartOf(*screens, wallId, between, a, b, x, r) : real(0);
+            anySeen = anySeen || (counts && by < hidden), anyApart = anyApart || by > 0;
+            apart.of[l] = by;
         }
-        return hidden && !any ? 0 : uint16_t(seen);
+        return !anyApart ? All : anySeen ? Some : Nothing;
     }
 };
 
@@ -158,7 +160,7 @@ public:
         piece_ = std::max(64, (int(clusters) + 255) / 256);
         entries_.resize((clusters + piece_ - 1) / piece_);
         inner_.resize(entries_.size());
-        seen_.resize(entries_.size()), innerSeen_.resize(entries_.size());
+        apart_.resize(entries_.size()), innerApart_.resize(entries_.size());
         ends_.resize(entries_.size());
         for (size_t p = 0; p < ends_.size(); ++p)
             ends_[p] = uint32_t(std::min(clusters, (p + 1) * piece_));
@@ -210,8 +212,8 @@ private:
 
     uint32_t buildPiece(int begin, int end, const Search& s, int piece) {
         std::vector<uint32_t>&entries = entries_[piece], &inner = inner_[piece];
-        std::vector<uint16_t>&seen = seen_[piece], &innerSeen = innerSeen_[piece];
-        seen.clear();
+        std::vector<PairsApart>&apart = apart_[piece], &innerApart = innerApart_[piece];
+        apart.clear();
         size_t used = 0;
         uint32_t farthest = uint32_t(end);
         for (int first = begin, last; first < end; first = last) {
@@ -233,44 +235,51 @@ private:
                 }
                 lists_[c].count = lists_[c].clear = uint32_t(used - before);
                 if (s.sight.screens) {
-                    hide(s, c, entries.data() + before, seen);
+                    hide(s, c, entries.data() + before, apart);
                     used = before + lists_[c].count;
                 }
                 listed_[c] = true;
             }
         }
         // The arena may have moved while it grew: only now are addresses known.
-        inner.resize(entries.size()), innerSeen.resize(seen.size() + 1);
-        size_t next = 0, nextSeen = 0;
+        inner.resize(entries.size()), innerApart.resize(apart.size() + 1);
+        size_t next = 0, nextApart = 0;
         for (int c = begin; c < end; ++c) {
             ClusterList& list = lists_[c];
             list.clusters = entries.data() + next, list.inner = inner.data() + next;
-            list.seen = seen.data() + nextSeen, list.innerSeen = innerSeen.data() + nextSeen;
-            next += list.count, nextSeen += list.count - list.clear;
+            if (list.within) list.within = apart.data() + nextApart++;
+            list.apart = apart.data() + nextApart;
+            list.innerApart = innerApart.data() + nextApart;
+            next += list.count, nextApart += list.count - list.clear;
         }
         return farthest;
     }
 
     // Of cluster c's entries leaves out those whom thin solids hide from it, and puts those last of
     // whom they hide a part.
-    void hide(const Search& s, int c, uint32_t* entries, std::vector<uint16_t>& seen) {
+    void hide(const Search& s, int c, uint32_t* entries, std::vector<PairsApart>& apart) {
         ClusterList& list = lists_[c];
         const uint8_t* own = s.own.sidesOf(uint32_t(c));
         std::vector<uint32_t> partly;
         uint32_t clear = 0;
+        PairsApart pairs;
+        if (s.once && !s.sight.isFree(own, own) &&
+            s.sight.pairsOf(c, c, s.reach, pairs) != Sight::All) {
+            apart.push_back(pairs);
+            list.within = &apart.back();  // until addresses are known
+        }
         for (uint32_t k = 0; k < list.count; ++k) {
             const uint32_t j = entries[k];
-            const uint16_t pairs = s.sight.isFree(own, s.other.sidesOf(j))
-                                       ? allSeen
-                                       : s.sight.pairsOf(c, int(j), s.reach);
-            if (pairs == allSeen)
+            const auto seen = s.sight.isFree(own, s.other.sidesOf(j))
+                                  ? Sight::All
+                                  : s.sight.pairsOf(c, int(j), s.reach, pairs);
+            if (seen == Sight::All)
                 entries[clear++] = j;
-            else if (pairs != 0)
-                partly.push_back(j), seen.push_back(pairs);
+            else if (seen == Sight::Some)
+                partly.push_back(j), apart.push_back(pairs);
         }
         std::copy(partly.begin(), partly.end(), entries + clear);
         list.clear = clear, list.count = clear + uint32_t(partly.size());
-        if (s.once && !s.sight.isFree(own, own)) list.within = s.sight.pairsOf(c, c, s.reach);
     }
 
     // Clusters whose rows are searched together: a few that lie in one row.
@@ -405,7 +414,7 @@ private:
     std::vector<ClusterList> lists_;
     std::vector<std::vector<uint32_t>> entries_,
         inner_;  // one arena a piece, kept from step to step
-    std::vector<std::vector<uint16_t>> seen_, innerSeen_;
+    std::vector<std::vector<PairsApart>> apart_, innerApart_;
 };
 
 }  // namespace spindrift::LANES

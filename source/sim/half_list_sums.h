@@ -96,8 +96,8 @@ private:
         const Vector<Wide> x = load(v.fluid.position, i);
         const auto own = pass.input(i);
         const JCluster same{i.first / clusterSize * clusterSize};
-        const uint16_t seen = v.fluidNearFluid.lists[i.first / clusterSize].within;
-        const Wide apart = seen == allSeen ? Wide(0) : apartUnless(seen, i);
+        const PairsApart* within = v.fluidNearFluid.lists[i.first / clusterSize].within;
+        const Wide apart = within ? apartOf(*within, i) : Wide(0);
         auto sum = pass.of(makePair(v.c, x, load(v.fluid.position, same), apart), own,
                            pass.input(same));  // each gives itself to all four
         forNeighbours<Pass::lists, Pass::activeFrom>(

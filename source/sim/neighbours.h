@@ -16,7 +16,7 @@ template <class R> struct Pair {
     R inverseDistance2;  // 1 / (distance^2 + eta^2), finite everywhere
 };
 
-// `apart`: 0, or enough to put pairs out of reach that do not see each other.
+// `apart`: 0, or what thin solids put the pair apart by.
 template <class R>
 HD inline Pair<R> makePair(const StepParameters& c, Vector<R> xi, Vector<R> xj, R apart) {
     const Vector<R> r = imageOf(c, xi - xj);
@@ -30,11 +30,8 @@ enum class Lists { All, BuildInner, Inner };
 // A group narrower than a cluster sees but a part of the hits, so that it can't tell.
 inline constexpr bool buildsInner = ICluster::size == clusterSize;
 
-// Of the pairs of the particles i with a cluster those that are hidden.
-HD inline Wide apartUnless(uint16_t seen, ICluster i) {
-    const unsigned lanes = unsigned(seen) >> (clusterSize * (i.first % clusterSize));
-    const uint8_t bits[8] = {uint8_t(lanes & 255), uint8_t(lanes >> 8)};
-    return select(Wide::Mask{hn::LoadMaskBits(WideTag(), bits)}, Wide(0), Wide(4));
+HD inline Wide apartOf(const PairsApart& pairs, ICluster i) {
+    return Wide{hn::LoadU(WideTag(), pairs.of + clusterSize * (i.first % clusterSize))};
 }
 
 // With `active` only clusters of which it says at least `from`. The clusters of which all are seen
@@ -45,7 +42,7 @@ HD inline void forNeighbours(const View& v, const Neighbourhood& near, ICluster 
     ClusterList& list = near.lists[i.first / clusterSize];
     const bool inner = buildsInner && lists == Lists::Inner;
     const uint32_t* clusters = inner ? list.inner : list.clusters;
-    const uint16_t* seen = inner ? list.innerSeen : list.seen;
+    const PairsApart* pairsApart = inner ? list.innerApart : list.apart;
     const uint32_t count = inner ? list.innerCount : list.count,
                    clear = inner ? list.innerClear : list.clear;
     uint32_t kept = 0, keptClear = 0;
@@ -63,9 +60,9 @@ HD inline void forNeighbours(const View& v, const Neighbourhood& near, ICluster 
         }
         if (k == clear) keptClear = kept;
         if (k == count) break;
-        apart = apartUnless(seen[k - clear], i), end = k + 1;
+        apart = apartOf(pairsApart[k - clear], i), end = k + 1;
         if constexpr (buildsInner && lists == Lists::BuildInner)
-            list.innerSeen[kept - keptClear] = seen[k - clear];
+            list.innerApart[kept - keptClear] = pairsApart[k - clear];
     }
     if constexpr (buildsInner && lists == Lists::BuildInner)
         list.innerCount = kept, list.innerClear = keptClear;
@@ -102,11 +99,16 @@ template <Lists, class F> HD inline void forNeighbours(const View& v, const Neig
             forStretches(
                 g.cellX(xi.x - left), g.cellX(xi.x + left), g.cells.x, [&](int first, int last) {
                     for (int j = row[first], end = row[last + 1]; j < end; ++j) {
-                        const Pair<real> pair = makePair(v.c, xi, load(near.position, j), real(0));
-                        if (pair.distance2 < v.c.support2 &&
-                            !(screened &&
-                              !sees(*v.screens, v.walls.id, near.between, i, j, xi, pair.r)))
-                            f(pair, j);
+                        const Vector<real> xj = load(near.position, j);
+                        Pair<real> pair = makePair(v.c, xi, xj, real(0));
+                        if (!(pair.distance2 < v.c.support2)) continue;
+                        if (screened) {
+                            const real apart =
+                                apartOf(*v.screens, v.walls.id, near.between, i, j, xi, pair.r);
+                            if (apart == hidden) continue;
+                            pair = makePair(v.c, xi, xj, apart);
+                        }
+                        f(pair, j);
                     }
                 });
         }

@@ -1,5 +1,5 @@
-// Thin solids as screens: fluid that one of them separates does not see each other, and each side
-// has boundary particles of its own, which it sees through the solid.
+// Thin solids as screens: fluid that one of them separates does not feel each other, and each side
+// has boundary particles of its own.
 #pragma once
 
 #include "sim/solid_shape.h"
@@ -54,8 +54,8 @@ HD inline real crossingOfMesh(const SolidState& s, Vector<real> p, Vector<real> 
     }
 }
 
-// At which share of the way from p to q, in the solid's own axes, it enters the solid deeper than
-// its grace; 2 where it does not.
+// At which share of the way from p to q, in the solid's own axes, it enters a solid that is no
+// plate deeper than its grace; 2 where it does not.
 HD inline real crossing(const SolidState& s, Vector<real> p, Vector<real> q) {
     real in = 0, out = 1;
     for (int k = 0; k < s.planes; ++k) {
@@ -81,45 +81,144 @@ HD inline real crossing(const SolidState& s, Vector<real> p, Vector<real> q) {
     return s.field ? crossingOfMesh(s, p, q, in, out) : in;
 }
 
-// The first solid on the way from x to x - r, or -1.
-HD inline int firstCrossed(const Screens& screens, Vector<real> x, Vector<real> r) {
-    const StepParameters& c = screens.c;
-    real soonest = 2;
-    int first = -1;
-    for (int k = 0; k < screens.count; ++k) {
-        const SolidState& s = screens.solids[screens.thin[k]];
+// What a thin solid leaves of what p and q, in its own axes, see of each other, and at which share
+// of the way it stands.
+struct Hiding {
+    real at, left;
+};
+
+// A plate hides by its middle. Around its ends fluid feels fluid as if it were as far away as the
+// shortest way around is long: so what is hidden fades out, and no sum jumps when something moves
+// in or out of sight. There is no way around where the plate goes on in a wall or another solid.
+HD inline Hiding hidingOfPlate(const StepParameters& c, const SolidState& s, Vector<real> p,
+                               Vector<real> q) {
+    const real a = dot(s.normal[s.plate], p), b = dot(s.normal[s.plate], q);
+    if (!(a * b < 0)) return {2, 1};
+    const Vector<real> r = q - p, through = addScaled(p, a / (a - b), r);
+    const real length2 = dot(r, r);
+    real around = c.support;
+    for (int k = 0; k < s.planes; ++k) {
+        if (k / 2 == s.plate / 2) continue;
+        const real depth = s.offset[k] - dot(s.normal[k], through);
+        if (depth + s.beyond[k] <= 0) return {2, 1};
+        if (s.beyond[k] > 0 || s.joined[k]) continue;
+        // Unfolded along the end's edge, the way over it is straight.
+        const real below = s.offset[k] - dot(s.normal[k], p),
+                   after = s.offset[k] - dot(s.normal[k], q), rise = after - below,
+                   over = squareRoot(a * a + below * below) + squareRoot(b * b + after * after),
+                   along2 = max(length2 - (b - a) * (b - a) - rise * rise, real(0));
+        around = min(around, squareRoot(over * over + along2));
+    }
+    const real longer = 1 - around / c.support, straight = 1 - squareRoot(length2) / c.support;
+    const real share = longer > 0 ? min(longer / straight, real(1)) : real(0);
+    return {a / (a - b), share * share * share * share};  // as Wendland's kernels, nearly
+}
+
+HD inline Hiding hiding(const StepParameters& c, const SolidState& s, Vector<real> p,
+                        Vector<real> q) {
+    if (s.plate >= 0) return hidingOfPlate(c, s, p, q);
+    const real at = s.hides ? crossing(s, p, q) : real(2);
+    return {at, at < 2 ? real(0) : real(1)};
+}
+
+// The way from x to x - r in a solid's own axes.
+struct Way {
+    Vector<real> from, to;
+    HD Way(const StepParameters& c, const SolidState& s, Vector<real> x, Vector<real> r) {
         auto own = [&](Vector<real> a) LANE_CALL {
             return Vector<real>{dot(a, s.axis[0]), dot(a, s.axis[1]), dot(a, s.axis[2])};
         };
         const Vector<real> half = real(0.5) * r,
                            arm = imageOf(c, x - half - intoDomain(c, s.middle));
-        const real share = crossing(s, own(arm + half), own(arm - half));
-        if (share < soonest) soonest = share, first = screens.thin[k];
+        from = own(arm + half), to = own(arm - half);
     }
-    return first;
+};
+
+// Whether p is where a plate goes on in the domain's wall, or beside its faces there.
+HD inline bool isInWall(const SolidState& s, Vector<real> p) {
+    bool isIn = false;
+    for (int k = 0; k < s.planes; ++k) {
+        if (k / 2 == s.plate / 2) continue;
+        const real above = dot(s.normal[k], p) - s.offset[k];
+        if (above >= s.beyond[k]) return false;
+        isIn = isIn || above > 0;
+    }
+    return isIn;
 }
 
-// Whether fluid at x sees the boundary particle at x - r: one of a thin solid through that one
-// only, and from in front of its face.
-HD inline bool seesWall(const Screens& screens, Vector<real> x, Vector<real> r, int id) {
-    const int k = id - screens.firstId, solid = screens.solidOf[k],
+// Of boundary particles that are not a thin solid's. Those beside a plate's foot count as far as
+// their cells are in front of its face: behind it the plate has its own.
+HD inline real leftOfWall(const Screens& screens, const SolidState& s, const Way& way) {
+    const real left = hiding(screens.c, s, way.from, way.to).left;
+    if (s.plate < 0) return left;
+    const Vector<real> n = s.normal[s.plate];
+    const real side = dot(n, way.from) < 0 ? real(-1) : real(1),
+               before = side * dot(n, way.to) - s.offset[s.plate],
+               front = min(max(real(0.5) + before / screens.spacing, real(0)), real(1));
+    return isInWall(s, way.to) ? front : max(left, front);
+}
+
+// Of a thin solid's own particle k: those of a plate from their face's side; what is beyond it as
+// far as it hides the fluid there.
+HD inline Hiding leftOfOwn(const Screens& screens, const SolidState& s, int k, const Way& way) {
+    const Vector<real> face = load(screens.face, k);
+    const real least = load(screens.least, k);
+    if (s.plate < 0) {
+        const real at = s.hides ? crossing(s, way.from, way.to) : real(1);
+        return {at, at < 2 && dot(way.to - way.from, face) > least ? real(1) : real(0)};
+    }
+    const Vector<real> n = s.normal[s.plate];
+    if ((dot(n, way.from) >= 0) != (dot(n, face) < 0)) return {2, 0};
+    const bool isInside = least > -1;
+    if (isInside || isInWall(s, way.to)) return {1, 1};
+    const Hiding h = hidingOfPlate(screens.c, s, way.from, way.to);
+    return {h.at, 1 - h.left};
+}
+
+// How much a particle at x sees of one at x - r; `wall` says which boundary particle that is, or
+// -1.
+HD inline real sightOf(const Screens& screens, Vector<real> x, Vector<real> r, int wall) {
+    const int solid = wall < 0 ? -1 : screens.solidOf[wall],
               owner = solid >= 0 && screens.solids[solid].grace > 0 ? solid : -1;
-    if (firstCrossed(screens, x, r) != owner) return false;
-    if (owner < 0) return true;
-    const Vector<real> face = turned(screens.solids[owner], load(screens.face, k));
-    return -dot(r, face) > load(screens.least, k);
+    Hiding own{2, 1};
+    if (owner >= 0) {
+        const SolidState& s = screens.solids[owner];
+        own = leftOfOwn(screens, s, wall, Way(screens.c, s, x, r));
+    }
+    real left = own.left;
+    for (int k = 0; k < screens.count && left > 0; ++k) {
+        if (screens.thin[k] == owner) continue;
+        const SolidState& s = screens.solids[screens.thin[k]];
+        const Way way(screens.c, s, x, r);
+        if (wall >= 0 && owner < 0) {
+            left = left * leftOfWall(screens, s, way);
+        } else {
+            const Hiding h = hiding(screens.c, s, way.from, way.to);
+            if (h.at < own.at) left = left * h.left;
+        }
+    }
+    return left;
 }
 
-// Whether particle i of one set, at x, sees particle j of the other, at x - r. Both see each other
-// or neither does: the way between two fluid particles is walked from the same end. Not a part of
-// the passes' loops, whose registers it would need.
-SCREEN_CALL inline bool sees(const Screens& screens, const int* wallId, Between between, int i,
-                             int j, Vector<real> x, Vector<real> r) {
-    if (between == Between::FluidAndWalls) return seesWall(screens, x, r, wallId[j]);
-    const bool fromOther = between == Between::WallsAndFluid || j < i;
+inline constexpr real hidden = 4;
+
+// What a pair's squared distance in support radii grows by, so that each feels of the other what
+// it sees: particle i of one set, at x, and j of the other, at x - r. It is the same for both: the
+// way between two fluid particles is walked from the same end. Not a part of the passes' loops,
+// whose registers it would need.
+SCREEN_CALL inline real apartOf(const Screens& screens, const int* wallId, Between between, int i,
+                                int j, Vector<real> x, Vector<real> r) {
+    const bool fromOther =
+        between == Between::WallsAndFluid || (between == Between::Fluid && j < i);
     if (fromOther) x = x - r, r = real(-1) * r;
-    if (between == Between::WallsAndFluid) return seesWall(screens, x, r, wallId[i]);
-    return firstCrossed(screens, x, r) < 0;
+    const int wall = between == Between::Fluid
+                         ? -1
+                         : wallId[between == Between::WallsAndFluid ? i : j] - screens.firstId;
+    const real left = sightOf(screens, x, r, wall), q = squareRoot(dot(r, r)) / screens.c.support;
+    if (!(left > 0)) return hidden;
+    if (left >= 1 || q >= 1) return 0;
+    const real far = 1 - (1 - q) * squareRoot(squareRoot(left));
+    return far * far - q * q;
 }
 
 // Whether a thin solid may be on any way as long as the support radius that ends at x, or its
@@ -138,10 +237,13 @@ SCREEN_CALL inline bool isBesideScreen(const Screens& screens, Vector<real> x) {
     return false;
 }
 
-// A thin solid that stands on a wall of the domain separates in that wall as well.
+// A thin solid that stands on a wall of the domain separates in that wall as well. Where another
+// solid touches the middle of an end, or across a periodic axis it touches itself, there is no way
+// around it.
 struct MeetWalls {
     using Index = int;
     SolidState* solids;
+    int count;
     StepParameters c;
     Vector<real> size;  // m, the domain's
     real spacing;
@@ -154,7 +256,27 @@ struct MeetWalls {
                                  touchesWall(n.y, at.y, size.y, c.period.y) ||
                                  touchesWall(n.z, at.z, size.z, c.period.z);
             s.beyond[k] = touches ? 2 * c.support : real(0);
+            s.joined[k] = !touches && (meetsItself(n, s.offset[k]) || meetsSolid(i, at));
         }
+    }
+    HD bool meetsItself(Vector<real> normal, real offset) const {
+        auto spans = [&](real normal, real period) {
+            return period > 0 && normal * normal > real(0.98) &&
+                   2 * offset > period - real(0.25) * spacing;
+        };
+        return spans(normal.x, c.period.x) || spans(normal.y, c.period.y) ||
+               spans(normal.z, c.period.z);
+    }
+    HD bool meetsSolid(int i, Vector<real> at) const {
+        for (int other = 0; other < count; ++other) {
+            const SolidState& s = solids[other];
+            if (other == i) continue;
+            const Vector<real> arm = imageOf(c, at - s.middle),
+                               own{dot(arm, s.axis[0]), dot(arm, s.axis[1]), dot(arm, s.axis[2])};
+            Vector<real> normal{0, 0, 0};
+            if (surface(s, own, normal) < real(0.25) * spacing) return true;
+        }
+        return false;
     }
     HD bool touchesWall(real normal, real at, real size, real period) const {
         const real near = real(0.25) * spacing;

@@ -29,6 +29,7 @@ inline SolidState solidAtHome(const Scene& scene, const Solid& solid) {
         middle.z = 0.5 * double(scene.domain.max.z - scene.domain.min.z);
     SolidState s{};
     s.grace = real(std::min(thinness(scene, solid) / 8, 0.05 * double(scene.simulation.spacing)));
+    s.hides = needsScreen(scene, solid), s.plate = faceOfPlate(scene, solid);
     s.home = s.middle = s.middleBefore = toReal(middle);
     s.axis[0] = {1, 0, 0}, s.axis[1] = {0, 1, 0}, s.axis[2] = {0, 0, 1};
     for (int k = 0; k < 3; ++k) s.axisBefore[k] = s.axis[k];
@@ -40,6 +41,29 @@ inline SolidState solidAtHome(const Scene& scene, const Solid& solid) {
     s.radius = real(shape.radius), s.across = toReal(shape.across);
     s.reach = solid.shape == Shape::Plane ? real(1e9) : real(reachOf(solid));
     return s;
+}
+
+// Of all meshes, one after the other, the distances from their surfaces.
+inline std::vector<real> fieldsOf(const Scene& scene, std::vector<SolidState>& states) {
+    std::vector<real> all;
+    for (size_t k = 0; k < states.size(); ++k) {
+        const Convex shape = convexOf(scene.solids[k], scene.simulation.dimensions);
+        if (!shape.mesh) continue;
+        const DistanceField field =
+            shape.mesh->field(shape.mesh->fieldSpacing(scene.simulation.spacing / shape.scale));
+        for (float distance : field.distances) all.push_back(real(shape.scale * double(distance)));
+        states[k].nodes = field.nodes;
+        states[k].fieldLow = toReal(shape.scale * field.low),
+        states[k].nodesPerMetre = real(1 / (shape.scale * field.spacing));
+    }
+    return all;
+}
+inline void pointToFields(std::vector<SolidState>& states, const real* fields) {
+    for (SolidState& s : states) {
+        if (s.nodes.x == 0) continue;
+        s.field = fields;
+        fields += size_t(s.nodes.x) * size_t(s.nodes.y) * size_t(s.nodes.z);
+    }
 }
 
 // Owns the solids and what their particles and those of the domain's walls have from the start.
@@ -68,7 +92,8 @@ public:
             if (states[size_t(s)].grace > 0) thin.push_back(s);
         fill(thin_, thin);
         spacing_ = scene.simulation.spacing;
-        fillFields(scene, states);
+        fill(fields_, fieldsOf(scene, states));
+        pointToFields(states, fields_.data());
         fill(states_, states), fill(keys_, keys);
         const Vec3 size = scene.domain.max - scene.domain.min;
         size_ = {real(size.x), real(size.y), real(size.z)};
@@ -145,7 +170,8 @@ public:
             placeWalls(flow_.view());  // all but their places, which the sort took along
         }
         if (!anyThin()) return;
-        device_.forEach(count_, MeetWalls{states_.data(), flow_.parameters, size_, spacing_});
+        device_.forEach(count_,
+                        MeetWalls{states_.data(), count_, flow_.parameters, size_, spacing_});
         flow_.search.findSides(flow_.view());
     }
     // The clock is at the step's end, what floats at its beginning.
@@ -306,8 +332,9 @@ private:
     }
     // As thin ones separate fluid and walls.
     void screen() {
-        const Screens screens{states_.data(), thin_.data(),    int(thin_.size()), flow_.parameters,
-                              firstId_,       solidOf_.data(), {face_.data()},    {least_.data()}};
+        const Screens screens{states_.data(),   thin_.data(),    int(thin_.size()),
+                              flow_.parameters, firstId_,        solidOf_.data(),
+                              {face_.data()},   {least_.data()}, spacing_};
         screens_.resize(1);
         device_.upload(screens_.data(), &screens, 1);
         flow_.screens = screens_.data();
@@ -320,25 +347,6 @@ private:
     template <class T> void fill(Buffer<T, Device>& buffer, const std::vector<T>& host) {
         buffer.resize(host.size());
         device_.upload(buffer.data(), host.data(), host.size());
-    }
-    void fillFields(const Scene& scene, std::vector<SolidState>& states) {
-        std::vector<real> all;
-        std::vector<size_t> begin;
-        for (size_t k = 0; k < states.size(); ++k) {
-            begin.push_back(all.size());
-            const Convex shape = convexOf(scene.solids[k], scene.simulation.dimensions);
-            if (!shape.mesh) continue;
-            const DistanceField field =
-                shape.mesh->field(shape.mesh->fieldSpacing(scene.simulation.spacing / shape.scale));
-            for (float distance : field.distances)
-                all.push_back(real(shape.scale * double(distance)));
-            states[k].nodes = field.nodes;
-            states[k].fieldLow = toReal(shape.scale * field.low),
-            states[k].nodesPerMetre = real(1 / (shape.scale * field.spacing));
-        }
-        fill(fields_, all);
-        for (size_t k = 0; k < states.size(); ++k)
-            if (states[k].nodes.x > 0) states[k].field = fields_.data() + begin[k];
     }
     void placeParticles(const Scene& scene, const std::vector<Vec3>& walls,
                         const std::vector<int>& sizes) {
@@ -363,7 +371,7 @@ private:
                            [&](float v) { return real(v * share); });
             std::fill_n(solidOf.begin() + long(end), sizes[s], int(s));
             if (scene.solids[s].floats()) fillAreas(scene, scene.solids[s], sample, int(end), area);
-            fillFaces(sample, scene.solids[s].shape == Shape::Block, int(end), face, least);
+            fillFaces(sample, int(end), face, least);
             end += volumes.size();
         }
         std::vector<real> x(vectorSize(int(slots)));
@@ -372,16 +380,15 @@ private:
         fill(solidOf_, solidOf), fill(position_, x), fill(mass_, mass), fill(area_, area);
         fill(face_, face), fill(least_, least);
     }
-    // A plate's are seen from any place that is nearer to their face than they are, or for one of
-    // the faces as near; other solids' that are beyond them from anywhere through them.
-    static void fillFaces(const SolidSample& sample, bool isPlate, int first,
-                          std::vector<real>& face, std::vector<real>& least) {
+    // Seen from any place that is nearer to their face than they are, or for one of the faces as
+    // near; those that are beyond their solid from anywhere through it.
+    static void fillFaces(const SolidSample& sample, int first, std::vector<real>& face,
+                          std::vector<real>& least) {
         for (size_t i = 0; i < sample.faces.size(); ++i, ++first) {
             const Vec3 f = sample.faces[i];
             for (int k = 0; k < 3; ++k) face[size_t(vectorOffset(first, k))] = real(f[k]);
             const bool asNear = f.x != 0 ? f.x < 0 : f.y != 0 ? f.y < 0 : f.z < 0;
-            least[size_t(first)] =
-                isPlate || !sample.beyond[i] ? real(asNear ? -1e-30 : 0) : real(-1e30);
+            least[size_t(first)] = !sample.beyond[i] ? real(asNear ? -1e-30 : 0) : real(-1e30);
         }
     }
     static void fillAreas(const Scene& scene, const Solid& solid, const SolidSample& sample,

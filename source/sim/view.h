@@ -111,21 +111,24 @@ template <class F> HD inline void forStretches(int first, int last, int n, const
     for (int k = beyond < 0; k < 2; ++k) f(k ? first : 0, k ? last : beyond);
 }
 
-inline constexpr uint16_t allSeen = 0xffff;
+// What the squared distances (in support radii) of a cluster's pairs with another one grow by,
+// particle by particle of the one: 0 where they see each other (screens.h).
+struct PairsApart {
+    float of[clusterSize * clusterSize];
+};
 
 // The clusters of another set that may hold neighbours of one cluster (SIMD lanes only): all that
 // are near enough for the life of the list, and of these the ones with a neighbour in this step.
-// Beside thin solids the last ones of both have pairs that do not see each other: a bit for each
-// pair, particle by particle of the cluster, says whether it does.
+// Beside thin solids the last ones of both have pairs that do not see all of each other.
 struct ClusterList {
     const uint32_t* clusters;
     uint32_t* inner;
     uint32_t count, innerCount;
     uint32_t clear, innerClear;  // how many come first of which all pairs see each other
-    const uint16_t* seen;
-    uint16_t* innerSeen;
-    uint16_t within = allSeen;  // the same of the cluster with itself, where lists hold each pair
-                                // once
+    const PairsApart* apart;
+    PairsApart* innerApart;
+    const PairsApart* within = nullptr;  // of the cluster with itself, where lists hold each pair
+                                         // once; null: all see each other
 };
 
 // Whose pairs thin solids may separate.
@@ -224,6 +227,9 @@ struct SolidState {
     real grace;  // m, 0: it is not thin; otherwise what goes no deeper into it does not cross it
     real beyond[Convex::mostPlanes];  // m, of one that is thin: how much further it separates,
                                       // where it stands on the domain's wall
+    bool joined[Convex::mostPlanes];  // whether another solid goes on there
+    bool hides;                       // fluid on its sides would see each other
+    int plate;                        // which plane is a face of it, the next one the other; or -1
     Vector<real> centreOfMass;        // m, of one that floats
     real speed;  // m/s, the most of its points, of one that floats or is dragged; otherwise 0: the
                  // scene knows it
@@ -246,6 +252,7 @@ struct Screens {
     const int* solidOf;
     VectorField face;   // m, of a thin solid's particles: from its face to it, in its own axes
     ScalarField least;  // m^2: it is seen from where that is further along `face` than itself
+    real spacing;       // m
 };
 
 struct View {

@@ -30,7 +30,7 @@ inline constexpr bool emulated = false;
 // where there are few particles backends would differ by more than rounding.
 inline void thicken(const Scene& scene, Solid& solid) {
     for (int k = 0; k < 3 && solid.shape == Shape::Block && thinness(scene, solid) > 0; ++k)
-        solid.max[k] = std::max(solid.max[k], solid.min[k] + 2 * scene.simulation.spacing);
+        solid.max[k] = std::max(solid.max[k], solid.min[k] + 4 * scene.simulation.spacing);
 }
 
 inline Scene shippedScene(const std::string& file, double particles = 400) {
