@@ -2,7 +2,7 @@
 #define LANES exactLanes
 #include "measure/exact.h"
 
-#include "sim/kernels.h"
+#include "sim/physics/kernels.h"
 
 #include <cmath>
 #include <numbers>

@@ -2,7 +2,7 @@
 // Gauges in the fluid: what a scene's probes read.
 #include "measure/interpolate.h"
 #include "measure/time_series.h"
-#include "sim/line_of_sight.h"
+#include "sim/neighbours/line_of_sight.h"
 
 #include <string>
 #include <vector>

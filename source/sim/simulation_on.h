@@ -2,16 +2,16 @@
 // the plan of its steps.
 #pragma once
 
-#include "sim/block_time_steps.h"
-#include "sim/floating.h"
-#include "sim/flow.h"
-#include "sim/measure.h"
-#include "sim/objects.h"
-#include "sim/picture.h"
-#include "sim/rare_forces.h"
-#include "sim/solids.h"
-#include "sim/step.h"
-#include "sim/step_runner.h"
+#include "sim/parts/block_time_steps.h"
+#include "sim/parts/floating.h"
+#include "sim/step/flow.h"
+#include "sim/particles/measure.h"
+#include "sim/parts/objects.h"
+#include "sim/particles/picture.h"
+#include "sim/parts/rare_forces.h"
+#include "sim/parts/solids.h"
+#include "sim/step/step.h"
+#include "sim/step/step_runner.h"
 
 #include <algorithm>
 #include <numeric>

@@ -9,7 +9,7 @@
 #include "device/omp.h"
 #include "scene/particles.h"
 #include "sim/make_simulation.h"
-#include "sim/plan.h"
+#include "sim/step/plan.h"
 #include "sim/simulation.h"
 #include "sim/step_state.h"
 

@@ -5,7 +5,7 @@
 #include "device/cuda.h"
 #include "device/omp.h"
 #include "sim/make_simulation.h"
-#include "sim/passes.h"
+#include "sim/physics/passes.h"
 
 #include <gtest/gtest.h>
 

@@ -49,7 +49,7 @@ bool matchesAny(const std::string& text, const std::vector<const char*>& pattern
                        [&](const char* pattern) { return fnmatch(pattern, text.c_str(), 0) == 0; });
 }
 
-// `"sim/view.h"` or `<cmath>`, with its first quote; "" for a line that includes nothing.
+// `"sim/particles/view.h"` or `<cmath>`, with its first quote; "" for a line that includes nothing.
 std::string included(const std::string& line) {
     std::istringstream words(line);
     std::string word;
@@ -94,27 +94,27 @@ TEST(Structure, CheckerFindsViolations) {
     for (const auto& [file, line] : std::vector<std::pair<std::string, std::string>>{
              {"core/vec.h", "#include \"scene/scene.h\""},
              {"scene/json.cpp", "#include \"sim/simulation.h\""},
-             {"sim/passes.h", "  #  include \"render/renderer.h\"  // why not"},
+             {"sim/physics/passes.h", "  #  include \"render/renderer.h\"  // why not"},
              {"render/renderer.cpp", "#include \"sim/simulation.h\""},
              {"measure/health.cpp", "#include \"app/frame.h\""},
              {"device/omp.h", "#include \"scene/scene.h\""},
-             {"sim/passes.h", "#include \"view.h\""},
-             {"sim/passes.h", "#include\"app/frame.h\""},
+             {"sim/physics/passes.h", "#include \"view.h\""},
+             {"sim/physics/passes.h", "#include\"app/frame.h\""},
              {"extra/new.h", "#include \"core/vec.h\""},
              {"app/frame.cpp", "#include <SDL.h>"},
              {"app/headless.cpp", "#include <EGL/egl.h>"},
-             {"sim/view.h", "#include <GL/glew.h>"},
+             {"sim/particles/view.h", "#include <GL/glew.h>"},
              {"render/font.cpp", "#include <imgui.h>"},
              {"app/panel.cpp", "#include <backends/imgui_impl_sdl.h>"},
-             {"sim/view.h", "#include <cuda_runtime.h>"},
+             {"sim/particles/view.h", "#include <cuda_runtime.h>"},
              {"render/renderer.cpp", "#include <cuda_gl_interop.h>"}})
         EXPECT_NE(violation(file, line), "") << file << ": " << line;
 }
 
 TEST(Structure, CheckerLetsTheRestPass) {
     for (const auto& [file, line] : std::vector<std::pair<std::string, std::string>>{
-             {"sim/passes.h", "#include \"core/vec.h\""},
-             {"sim/passes.h", "// #include \"render/renderer.h\""},
+             {"sim/physics/passes.h", "#include \"core/vec.h\""},
+             {"sim/physics/passes.h", "// #include \"render/renderer.h\""},
              {"main.cpp", "#include \"app/command_line.h\""},
              {"app/window/window.cpp", "#include <SDL.h>"},
              {"render/gl.h", "#include <GL/glew.h>"},

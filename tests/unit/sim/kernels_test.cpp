@@ -1,7 +1,7 @@
 // Kernels integrate to one, and their gradients are the derivatives of their values.
 #define SPINDRIFT_REAL double
 #define LANES kernelsTest
-#include "sim/kernels.h"
+#include "sim/physics/kernels.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // What two points see of each other past thin solids.
-#include "sim/line_of_sight.h"
+#include "sim/neighbours/line_of_sight.h"
 
 #include "meshes.h"
 #include "scene/convex.h"

@@ -1,7 +1,7 @@
 // The rule by which blocks of fluid rest (RestBlocks), by itself: what the neighbours do is given.
 #define SPINDRIFT_REAL double
 #define LANES sleepTest
-#include "sim/block_time_steps.h"
+#include "sim/parts/block_time_steps.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,309 @@
+// Owns the buffers of one kind of particles and keeps them sorted by cell.
+#pragma once
+
+#include "device/buffer.h"
+#include "core/error.h"
+#include "sim/particles/output_passes.h"
+#include "sim/particles/particle_fields.h"
+#include "sim/physics/passes.h"
+#include "sim/simulation.h"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <numeric>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace spindrift::LANES {
+
+template <class Device> class ParticleSet {
+public:
+    ParticleSet(Device& device, Kind kind) : device_(device), holds_{} {
+        holds_.kind = kind, holds_.velocity = holds_.density = kind == Kind::Fluid;
+    }
+
+    int slots() const { return slots_; }
+    const int* cellStart() const { return cellStart_.data(); }
+
+    Particles view() const {
+        Particles p = shownIn(now_);
+        p.id = id_.data();
+        if (!holds_.viscousVolume) p.viscousVolume = p.inverseDensity;
+        return p;
+    }
+
+    // Takes over particles with ids firstId, firstId + 1, ...; boundary particles have no
+    // velocities. Densities only where they are carried.
+    void upload(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities,
+                const std::vector<float>& densities, int firstId) {
+        std::vector<int> ids(positions.size());
+        std::iota(ids.begin(), ids.end(), firstId);
+        upload(positions, velocities, densities, ids);
+    }
+    void upload(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities,
+                const std::vector<float>& densities, const std::vector<int>& ids) {
+        const int n = int(positions.size());
+        resize((n + clusterSize - 1) / clusterSize * clusterSize);
+        std::vector<real> x(vectorSize(slots_)), u(vectorSize(slots_)),
+            rho(densities.begin(), densities.end());
+        std::vector<int> id(slots_, -1);
+        for (int i = 0; i < n; ++i) {
+            id[i] = ids[i];
+            for (int k = 0; k < 3; ++k) {
+                x[vectorOffset(i, k)] = positions[i][k];
+                if (kind() == Kind::Fluid) u[vectorOffset(i, k)] = velocities[i][k];
+            }
+        }
+        upload(&Particles::position, x);
+        if (kind() == Kind::Fluid) upload(&Particles::velocity, u);
+        if (holds_.densityRate) upload(&Particles::density, rho);
+        device_.upload(id_.data(), id.data(), id.size());
+    }
+
+    // What each particle of a mixture is, by ids from 0 on: see View.
+    void fillMixture(const std::vector<float>& massRatios, const std::vector<float>& viscosities) {
+        holds_.mixture = true;
+        resize(slots_);
+        if (sortedId_.size() > 0) resizeSorted(slots_);  // a recorded sort can't make room
+        const std::vector<int> id = copy(id_);
+        std::vector<real> ratio(slots_, 1), mu(slots_, 0);
+        for (int i = 0; i < slots_; ++i)
+            if (id[i] >= 0) ratio[i] = massRatios[id[i]], mu[i] = viscosities[id[i]];
+        upload(&Particles::massRatio, ratio);
+        upload(&Particles::viscosity, mu);
+    }
+
+    // Particles of one cell end up beside each other, cells of one row too.
+    void sort(const Grid& grid) {
+        const int rows = grid.cells.y * grid.cells.z;
+        key_.resize(slots_);
+        cellStart_.resize(size_t(rows) * grid.cells.x + 1);
+        device_.forEach(slots_, FindCell{view(), grid, key_.data()});
+        const int slots = device_.sortByCell(slots_, key_.data(), rows, grid.cells.x, clusterSize,
+                                             cellStart_.data(), order_);
+        resizeSorted(slots);
+        device_.forEach(slots, Reorder{order_.data(), id_.data(), sortedId_.data(), carried()});
+        flip();
+        resize(slots);
+    }
+    // The sorted copies become the particles: what a recorded sort can't do when it is run again,
+    // because it is the host's work. `side` says which buffers are the particles now.
+    void flip() {
+        id_.swap(sortedId_);
+        forFields([&](const ParticleField& field, size_t k) {
+            if (field.sorted(holds_)) now_[k].swap(sorted_[k]);
+        });
+        side_ = 1 - side_;
+    }
+    int side() const { return side_; }
+    // What it is to hold (Holdings). carryVelocity() says whether that is new: what boundary
+    // particles carry is to be filled in.
+    bool carryVelocity() { return !std::exchange(holds_.velocity, true) && (resize(slots_), true); }
+    void move() { holds_.moves = true, resize(slots_); }
+    void accelerate() { holds_.accelerates = holds_.moves = true, resize(slots_); }
+    void continueFlow() { holds_.continues = true, resize(slots_); }
+    void letSlip() { holds_.slips = true, resize(slots_); }
+    bool slips() const { return holds_.slips; }
+    void haveDensity() { holds_.density = true, resize(slots_); }
+    void carryDensity() { holds_.densityRate = true; }
+    void shift() { holds_.shifts = true; }
+    void keepVelocity() { holds_.keepsVelocity = true; }
+    void keepState() { holds_.keepsVelocity = holds_.keepsState = true; }
+    void keepPlace() { holds_.keepsPlace = true; }
+    void weighViscosity(bool weighs) { holds_.viscousVolume = weighs, resize(slots_); }
+    void addForces(bool pairs, bool normals) {
+        holds_.addsPairs = pairs, holds_.normals = normals;
+        resize(slots_);
+    }
+    void stepInBlocks(bool blocks) {
+        holds_.timeBins = blocks;
+        resize(slots_);
+        if (sortedId_.size() > 0) resizeSorted(slots_);  // a recorded sort can't make room
+    }
+    // Particles that never move are sorted once.
+    void keepOrder() {
+        sortedId_.release(), key_.release(), order_.release();
+        for (Numbers& field : sorted_) field.release();
+    }
+
+    // Relative to the domain's lower corner, in the order of ids from firstId on: bit by bit what
+    // upload() took, or what became of it.
+    std::vector<Vec3> positions(int count, int firstId) const {
+        return inOrder(&Particles::position, count, firstId);
+    }
+    std::vector<Vec3> velocities(int count, int firstId) const {
+        return inOrder(&Particles::velocity, count, firstId);
+    }
+    // Empty where density is not carried.
+    std::vector<float> densities(int count) const {
+        if (!holds_.densityRate) return {};
+        const std::vector<real> values = copy(now(&Particles::density));
+        const std::vector<int> id = copy(id_);
+        std::vector<float> out(count);
+        for (int i = 0; i < slots_; ++i)
+            if (id[i] >= 0) out[id[i]] = float(values[i]);
+        return out;
+    }
+
+    // In the order of ids, in world coordinates.
+    std::vector<Particle> download(int count, Vec3 origin) const {
+        std::vector<int> id = copy(id_);
+        std::vector<real> x = copy(now(&Particles::position)), u = copy(now(&Particles::velocity)),
+                          a = copy(now(&Particles::acceleration)),
+                          rho = copy(now(&Particles::density)),
+                          term = copy(now(&Particles::pressureOverRho2)),
+                          ratio = copy(now(&Particles::massRatio));
+        const Particles host = onHost(slots_, id, x, u, a, rho, term, ratio);
+        std::vector<Particle> out(count);
+        for (int i = 0; i < slots_; ++i)
+            if (id[i] >= 0) out[id[i]] = describe(host, i, origin);
+        return out;
+    }
+    // Only the slots around the particle with this id are fetched.
+    Particle downloadOne(int id, Vec3 origin) const {
+        const std::vector<int> ids = copy(id_);
+        const int slot = int(std::find(ids.begin(), ids.end(), id) - ids.begin());
+        CHECK(slot < slots_);
+        const int first = slot / clusterSize * clusterSize;
+        auto vectors = [&](VectorField Particles::*field) {
+            return copy(now(field), vectorOffset(first, 0), vectorSize(clusterSize));
+        };
+        auto numbers = [&](ScalarField Particles::*field) {
+            return copy(now(field), size_t(first), size_t(clusterSize));
+        };
+        std::vector<real> x = vectors(&Particles::position), u = vectors(&Particles::velocity),
+                          a = vectors(&Particles::acceleration), rho = numbers(&Particles::density),
+                          term = numbers(&Particles::pressureOverRho2), ratio;
+        if (holds_.mixture) ratio = numbers(&Particles::massRatio);
+        std::vector<int> own(ids.begin() + first, ids.begin() + first + clusterSize);
+        const Particles host = onHost(clusterSize, own, x, u, a, rho, term, ratio);
+        return describe(host, slot - first, origin);
+    }
+
+private:
+    using Numbers = Buffer<real, Device>;
+    static constexpr size_t fieldCount = std::size(particleFields);
+    using Fields = std::array<Numbers, fieldCount>;
+
+    Kind kind() const { return holds_.kind; }
+    // f(field, its number) for each field that there is.
+    template <class F> static void forFields(const F& f) {
+        for (size_t k = 0; k < fieldCount; ++k) f(particleFields[k], k);
+    }
+    static size_t numbersIn(const ParticleField& field, int slots) {
+        return field.isVector() ? size_t(vectorSize(slots)) : size_t(slots);
+    }
+    void resize(int slots) {
+        slots_ = slots;
+        id_.resize(slots);
+        forFields([&](const ParticleField& field, size_t k) {
+            if (field.held(holds_))
+                now_[k].resize(numbersIn(field, slots));
+            else
+                now_[k].release();
+        });
+        if (holds_.timeBins)
+            active_.resize(size_t(slots / clusterSize));
+        else
+            active_.release();
+    }
+    void resizeSorted(int slots) {
+        sortedId_.resize(slots);
+        forFields([&](const ParticleField& field, size_t k) {
+            if (field.sorted(holds_))
+                sorted_[k].resize(numbersIn(field, slots));
+            else
+                sorted_[k].release();
+        });
+    }
+    Particles shownIn(const Fields& fields) const {
+        Particles p{};
+        p.slots = slots_, p.active = active_.data();
+        forFields([&](const ParticleField& field, size_t k) {
+            if (field.isVector())
+                p.*field.vector = {fields[k].data()};
+            else
+                p.*field.scalar = {fields[k].data()};
+        });
+        return p;
+    }
+    Carried carried() const {
+        Carried all{};
+        forFields([&](const ParticleField& field, size_t k) {
+            if (!field.sorted(holds_)) return;
+            CHECK(all.count < Carried::most);
+            all.fields[all.count++] = {now_[k].data(), sorted_[k].data(), field.isVector(),
+                                       field.isPosition(), field.empty};
+        });
+        return all;
+    }
+    template <class Field> const Numbers& now(Field Particles::*field) const {
+        size_t found = fieldCount;
+        forFields([&](const ParticleField& f, size_t k) {
+            if constexpr (std::is_same_v<Field, VectorField>) {
+                if (f.vector == field) found = k;
+            } else {
+                if (f.scalar == field) found = k;
+            }
+        });
+        return now_[found];
+    }
+    template <class Field> void upload(Field Particles::*field, const std::vector<real>& values) {
+        device_.upload(now(field).data(), values.data(), values.size());
+    }
+    template <size_t... k> static Fields makeFields(Device& device, std::index_sequence<k...>) {
+        return {((void)k, Numbers(device))...};
+    }
+    static Particles onHost(int slots, std::vector<int>& id, std::vector<real>& x,
+                            std::vector<real>& u, std::vector<real>& a, std::vector<real>& rho,
+                            std::vector<real>& term, std::vector<real>& ratio) {
+        Particles p{};
+        p.slots = slots, p.id = id.data();
+        p.position = {x.data()}, p.velocity = {u.data()}, p.acceleration = {a.data()};
+        p.density = {rho.data()}, p.pressureOverRho2 = {term.data()},
+        p.massRatio = {ratio.empty() ? nullptr : ratio.data()};
+        return p;
+    }
+    static Particle describe(const Particles& host, int i, Vec3 origin) {
+        auto toVec3d = [](Vector<real> v) { return Vec3d{double(v.x), double(v.y), double(v.z)}; };
+        return {host.id[i],
+                toVec3d(load(host.position, i)) + toDouble(origin),
+                toVec3d(load(host.velocity, i)),
+                toVec3d(load(host.acceleration, i)),
+                double(densityOf(host, i)),
+                double(pressureOf(host, i))};
+    }
+    std::vector<Vec3> inOrder(VectorField Particles::*field, int count, int firstId) const {
+        std::vector<real> values = copy(now(field));
+        const std::vector<int> id = copy(id_);
+        std::vector<Vec3> out(count);
+        for (int i = 0; i < slots_; ++i) {
+            if (id[i] < 0) continue;
+            const Vector<real> v = load(VectorField{values.data()}, i);
+            out[id[i] - firstId] = {float(v.x), float(v.y), float(v.z)};
+        }
+        return out;
+    }
+    template <class T> std::vector<T> copy(const Buffer<T, Device>& buffer) const {
+        return copy(buffer, 0, buffer.size());
+    }
+    template <class T>
+    std::vector<T> copy(const Buffer<T, Device>& buffer, size_t first, size_t count) const {
+        std::vector<T> host(count);
+        device_.download(host.data(), buffer.data() + first, count);
+        return host;
+    }
+
+    Device& device_;
+    Holdings holds_;
+    int slots_ = 0, side_ = 0;
+    Buffer<int, Device> id_{device_}, sortedId_{device_}, key_{device_}, order_{device_},
+        cellStart_{device_};
+    Buffer<uint8_t, Device> active_{device_};
+    Fields now_ = makeFields(device_, std::make_index_sequence<fieldCount>{}),
+           sorted_ = makeFields(device_, std::make_index_sequence<fieldCount>{});
+};
+
+}  // namespace spindrift::LANES

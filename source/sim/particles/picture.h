@@ -1,0 +1,81 @@
+// The vertices that the screen shows.
+#pragma once
+
+#include "sim/step/flow.h"
+#include "sim/particles/output_passes.h"
+#include "sim/physics/surface.h"
+
+#include <algorithm>
+#include <numeric>
+#include <type_traits>
+#include <vector>
+
+namespace spindrift::LANES {
+
+// The bin in which so many values are passed, from below.
+inline int binAfter(const std::vector<int>& counts, int values) {
+    int bin = 0;
+    const int last = int(counts.size()) - 1;
+    for (int n = counts[0]; n <= values && bin < last; n += counts[size_t(bin)]) ++bin;
+    return bin;
+}
+
+// Half a per cent of the values on either side are outliers. With `bulk` so are those beyond
+// Tukey's fences, one and a half times the range of the middle half away from it: density of spray
+// says nothing of the fluid.
+inline Range withoutOutliers(ValueRange range, const std::vector<int>& counts, bool bulk) {
+    const int all = std::accumulate(counts.begin(), counts.end(), 0), last = int(counts.size()) - 1;
+    const std::vector<int> reversed(counts.rbegin(), counts.rend());
+    int low = binAfter(counts, all / 200), high = last - binAfter(reversed, all / 200);
+    if (bulk) {
+        const int quarter = binAfter(counts, all / 4), most = last - binAfter(reversed, all / 4);
+        const int reach = 3 * (most - quarter + 1) / 2;
+        low = std::max(low, quarter - reach), high = std::min(high, most + reach);
+    }
+    const float bin = (range.high - range.low) / float(last);
+    return {range.low + bin * float(low), std::min(range.high, range.low + bin * float(high + 1))};
+}
+
+template <class Value, class Device> Range write(Device& device, const Particles& p, Vertex* out) {
+    const auto range = device.template sum<ValueRange>(p.slots, WriteVertices<Value>{p, out});
+    if (!(range.high > range.low)) return {range.low, range.high};
+    const std::vector<int> counts = device.histogram(p.slots, CountValues<Value>{p, range});
+    return withoutOutliers(range, counts, std::is_same_v<Value, DensityValue>);
+}
+
+// Found when a picture asks. (With block time steps not where fluid rests: lists are missing
+// there.)
+template <class Device> Range writeSurface(Flow<Device>& flow, Vertex* out) {
+    flow.showsSurface = true;
+    flow.addBuffers();
+    flow.template onPairsOrFluid<ComputeNormals>();
+    flow.template onFluid<TagSurface>();
+    flow.template onPairsOrFluid<LeaveOutSpray>();
+    return write<SurfaceValue>(flow.device, flow.fluid.view(), out);
+}
+
+template <class Device> Range writeFluid(Flow<Device>& flow, Vertex* out, ColorBy by) {
+    const Particles p = flow.fluid.view();
+    Device& device = flow.device;
+    switch (by) {
+        case ColorBy::Plain:
+            return write<PlainValue>(device, p, out);
+        case ColorBy::Velocity:
+            return write<SpeedValue>(device, p, out);
+        case ColorBy::Pressure:
+            return write<PressureValue>(device, p, out);
+        case ColorBy::Density:
+            return write<DensityValue>(device, p, out);
+        case ColorBy::Acceleration:
+            return write<AccelerationValue>(device, p, out);
+        case ColorBy::Id:
+            return write<IdValue>(device, p, out);
+        case ColorBy::Fluid:
+            return write<FluidValue>(device, p, out);
+        case ColorBy::Surface:
+            return writeSurface(flow, out);
+    }
+    return {0, 0};
+}
+
+}  // namespace spindrift::LANES

@@ -1,0 +1,270 @@
+// The passes of what floats: where solids touch each other and the domain's box, and how they
+// move.
+#pragma once
+
+#include "sim/parts/collisions.h"
+
+namespace spindrift::LANES {
+
+// Where a solid touches, it is made of balls: its outermost boundary particles, as large as they
+// are deep in it. They press like damped springs and rub (Cundall & Strack 1979); a face full of
+// them is as stiff as the step can bear, and overlaps by about a thousandth of a spacing under its
+// weight.
+struct Wrench {
+    Vec3d force, torque;
+    HD_OUT void add(const Wrench& o) { force = force + o.force, torque = torque + o.torque; }
+};
+
+// What presses: a mass m on such a spring, k = m rate^2, swings at `rate` rad/s and is damped by
+// that share of the critical.
+struct Springs {
+    real rate, damping;
+};
+
+// m, of a ball in a solid; with the direction out of it and the solid's own velocity there.
+HD inline real depthIn(const View& v, const SolidState& s, Vector<real> x, real radius,
+                       Vector<real>& n, Vector<real>& velocity) {
+    const Vector<real> arm = imageOf(v.c, x - s.middle);
+    if (dot(arm, arm) > (s.reach + radius) * (s.reach + radius)) return real(-1);
+    const real depth =
+        radius -
+        surface(s, Vector<real>{dot(arm, s.axis[0]), dot(arm, s.axis[1]), dot(arm, s.axis[2])}, n);
+    n = turned(s, n), velocity = s.velocity + cross(s.spin, arm);
+    return depth;
+}
+
+// Sums what `solid` feels where its balls touch walls and other solids, and where other solids'
+// balls touch it.
+struct SumTouches {
+    View v;
+    WallsAtHome home;
+    const RigidBody* bodies;
+    int solid;
+    struct Ball {
+        Vector<real> position, velocity;
+        real radius;
+    };
+
+    HD void addTo(Wrench& sum, int i) const {
+        const int owner = v.walls.id[i] < 0 ? -1 : home.solidOf(v.walls.id[i]);
+        if (owner < 0) return;
+        const SolidState& own = v.solids[owner];
+        const int k = v.walls.id[i] - home.firstId;
+        Vector<real> at = load(home.position, k) - own.home, normal{0, 0, 0};
+        real depth = -surface(own, at, normal);
+        Vector<real> place = load(v.walls.position, i);
+        if (own.grace > 0) {  // each face has its own, and has them on itself where it is too thin
+            const Vector<real> face = load(home.face, k);
+            if (dot(face, face) > bodies[owner].deepestBall * bodies[owner].deepestBall) return;
+            if (depth < 0)
+                depth = -surface(own, at - face, normal), place = place - turned(own, face);
+            if (depth < real(-0.1) * bodies[owner].deepestBall) return;
+            depth = max(depth, real(0));
+        }
+        if (depth > bodies[owner].deepestBall) return;
+        const Ball ball{place, load(v.walls.ownVelocity, i), depth};
+        Vector<real> force{0, 0, 0};
+        if (owner != solid)
+            force = real(-1) * pressOn(ball, owner, solid);
+        else {
+            touchBox(ball, force);
+            for (int other = 0; other < v.solidCount; ++other)
+                if (other != solid) force = force + pressOn(ball, solid, other);
+        }
+        const Vec3d f{force.x, force.y, force.z};
+        const Vector<real> arm = imageOf(v.c, ball.position - v.solids[solid].centreOfMass);
+        sum.add({f, cross(Vec3d{arm.x, arm.y, arm.z}, f)});
+    }
+    HD void touchBox(const Ball& b, Vector<real>& force) const {
+        const RigidBody& body = bodies[solid];
+        auto side = [&](real overlap, Vector<real> n) {
+            force = force + press(body, overlap, n, b.velocity - wallVelocity(v.c, b.position));
+        };
+        const StepParameters& c = v.c;
+        if (c.period.x <= 0)
+            side(b.radius - (b.position.x - c.low.x), {1, 0, 0}),
+                side(b.radius - (c.high.x - b.position.x), {-1, 0, 0});
+        if (c.period.y <= 0)
+            side(b.radius - (b.position.y - c.low.y), {0, 1, 0}),
+                side(b.radius - (c.high.y - b.position.y), {0, -1, 0});
+        if (c.period.z <= 0 && c.dimensions == 3)
+            side(b.radius - (b.position.z - c.low.z), {0, 0, 1}),
+                side(b.radius - (c.high.z - b.position.z), {0, 0, -1});
+    }
+    HD Vector<real> pressOn(const Ball& b, int owner, int other) const {
+        const SolidState& s = v.solids[other];
+        Vector<real> n{0, 0, 0}, own{0, 0, 0};
+        const real depth = depthIn(v, s, b.position, b.radius, n, own);
+        if (depth <= 0) return {0, 0, 0};
+        const RigidBody &mine = bodies[owner], &theirs = bodies[other];
+        const RigidBody& softer = mine.stiffness < theirs.stiffness ? mine : theirs;
+        RigidBody both = softer;
+        both.friction = min(mine.friction, theirs.friction);
+        return press(both, depth, n, b.velocity - own);
+    }
+    HD static Vector<real> press(const RigidBody& b, real overlap, Vector<real> n,
+                                 Vector<real> velocity) {
+        if (overlap <= 0) return {0, 0, 0};
+        const real apart = dot(velocity, n),
+                   normal = max(b.stiffness * overlap - b.damping * apart, real(0));
+        const Vector<real> along = velocity - apart * n;
+        const real slip = squareRoot(dot(along, along));
+        return addScaled(normal * n, -min(b.damping, b.friction * normal / max(slip, real(1e-12))),
+                         along);
+    }
+};
+
+struct AddTouch {
+    using Index = int;
+    const Wrench* one;
+    Wrench* sum;
+    HD void operator()(int) const { sum->add(*one); }
+};
+
+// The momentum that particles lost where a solid stopped them, kg m/s, and the angular momentum
+// about its centre.
+struct SumBounces {
+    View v;
+    Bounces bounces;
+    real mass;  // kg, of a fluid particle
+    int solid;
+    HD void addTo(Wrench& sum, int i) const {
+        if (v.fluid.id[i] < 0 || load(bounces.solid, i) != real(solid)) return;
+        const Vector<real> change = load(bounces.change, i),
+                           arm = imageOf(v.c,
+                                         load(v.fluid.position, i) - v.solids[solid].centreOfMass);
+        const Vec3d lost =
+            -double(mass * massRatio(v.fluid, i)) * Vec3d{change.x, change.y, change.z};
+        sum.add({lost, cross(Vec3d{arm.x, arm.y, arm.z}, lost)});
+    }
+};
+struct TakeMomentum {
+    using Index = int;
+    const RigidBody* bodies;
+    const Wrench* given;
+    SolidMotion* motions;
+    int dimensions;
+    HD void operator()(int s) const {
+        if (bodies[s].mass <= 0) return;
+        Wrench t = given[s];
+        if (dimensions == 2) t.force.z = t.torque.x = t.torque.y = 0;
+        motions[s].velocity = motions[s].velocity + (1 / bodies[s].mass) * t.force;
+        motions[s].angularMomentum = motions[s].angularMomentum + t.torque;
+    }
+};
+
+// The mouse's hand on a solid that doesn't float: the mass of fluid in its place, kg, 0: nothing
+// stops it; and what it gave to objects in the last step.
+struct Hand {
+    double mass;
+    const Stops* stops;
+};
+
+// v += F / m dt, x += v dt; the same of angular momentum and turn. A solid that the mouse holds
+// goes where it is wanted: one that floats by a damped spring, another one by itself, no faster
+// than a tenth of the speed of sound. Both hands are as strong. Objects that the solid runs into
+// slow it, as one body with those of their particles that it stops.
+struct MoveFloating {
+    using Index = int;
+    View v;
+    const RigidBody* bodies;
+    SolidMotion* motions;
+    const SolidLoad* loads;
+    const Wrench* touches;
+    double fluidMass;  // kg, of a particle
+    Hold hold;         // target relative to the domain's lower corner
+    Hand hand;
+    double kick, drift;                      // shares of the step
+    static constexpr double strongest = 60;  // m/s², of the solid that is held
+    HD void operator()(int s) const { bodies[s].mass > 0 ? moveFloating(s) : drag(s); }
+    HD void moveFloating(int s) const {
+        const RigidBody& body = bodies[s];
+        SolidMotion& m = motions[s];
+        const double dt = v.state->dt;
+        Wrench w = wrenchOn(s);
+        if (hold.solid == s) pull(w, body, m, v.solids[s]);
+        if (v.c.dimensions == 2) w.force.z = w.torque.x = w.torque.y = 0;
+        const Vec3d spin = spinOf(body, m),
+                    spinRate = turning(body, m, w.torque - cross(spin, m.angularMomentum));
+        m.acceleration = m.acceleration + body.told * ((1 / body.mass) * w.force - m.acceleration);
+        m.spinRate = m.spinRate + body.told * (spinRate - m.spinRate);
+        m.velocity = m.velocity + (kick * dt / body.mass) * w.force;
+        m.angularMomentum = m.angularMomentum + (kick * dt) * w.torque;
+        m.place = wrapped(m.place + (drift * dt) * m.velocity);
+        turnBy(m.turn, (drift * dt) * spinOf(body, m));
+    }
+    HD Wrench wrenchOn(int s) const {
+        const SolidLoad& load = loads[s];
+        const SolidState& state = v.solids[s];
+        const Vector<real> pull = bodyForce(v.c, gravityNow(v), state.centreOfMass),
+                           out = state.middle - state.centreOfMass;
+        auto sum = [&](int k) { return fluidMass * (load.pressure[k] + load.other[k]); };
+        const Vec3d fluid{sum(0), sum(1), sum(2)},
+            torque{load.torque[0], load.torque[1], load.torque[2]};
+        return {fluid + touches[s].force + bodies[s].mass * Vec3d{pull.x, pull.y, pull.z},
+                fluidMass * torque + cross(Vec3d{out.x, out.y, out.z}, fluid) + touches[s].torque};
+    }
+    HD void pull(Wrench& w, const RigidBody& body, const SolidMotion& m,
+                 const SolidState& s) const {
+        const double rate = 15;  // 1/s
+        const Vec3d target{hold.target.x, hold.target.y, hold.target.z};
+        const Vec3d wanted = (rate * rate) * (target - Vec3d{s.middle.x, s.middle.y, s.middle.z}) -
+                             (2 * rate) * m.velocity;
+        const double size = sqrt(dot(wanted, wanted));
+        w.force = w.force + (body.mass * (size > strongest ? strongest / size : 1.0)) * wanted;
+        w.torque = w.torque - rate * m.angularMomentum;
+    }
+    HD void drag(int s) const {
+        const double time = 0.05, fastest = 0.1 * double(v.c.soundSpeed),
+                     dt = v.state->dt;  // s, m/s
+        SolidMotion& m = motions[s];
+        const Vec3d before = m.velocity;
+        m.velocity = {0, 0, 0};
+        if (hold.solid != s) {
+            m.acceleration = {0, 0, 0};
+            return;
+        }
+        if (m.left < 0 && !v.solids[s].steady) m.left = v.state->time - dt;
+        const Vector<real> at = v.solids[s].middle;
+        const Vec3d way =
+            Vec3d{hold.target.x, hold.target.y, hold.target.z} - Vec3d{at.x, at.y, at.z};
+        const double far = sqrt(dot(way, way)), stops = sqrt(strongest * far);
+        double speed = far / (dt > time ? dt : time);
+        if (speed > fastest) speed = fastest;
+        if (hand.mass > 0 && speed > stops) speed = stops;  // it has to be slowed down again
+        m.velocity = (far > 0 ? speed / far : 0) * way;
+        if (hand.mass > 0) m.velocity = pushed(before, m.velocity);
+        if (v.c.dimensions == 2) m.velocity.z = 0;
+        const Vec3d change = (1 / (kick * dt)) * (m.velocity - before);
+        m.acceleration = m.acceleration + 0.25 * (change - m.acceleration);
+        m.place = m.place + (drift * dt) * m.velocity;
+    }
+    // From one velocity towards another, against the objects in its way.
+    HD Vec3d pushed(Vec3d before, Vec3d wanted) const {
+        const double* given = hand.stops->momentum;
+        const double all = hand.mass + hand.stops->mass,
+                     most = strongest * hand.mass / all * kick * v.state->dt;
+        const Vec3d slowed = before - (kick / all) * Vec3d{given[0], given[1], given[2]},
+                    change = wanted - slowed;
+        const double size = sqrt(dot(change, change));
+        return slowed + (size > most ? most / size : 1.0) * change;
+    }
+    HD Vec3d wrapped(Vec3d x) const {
+        const StepParameters& c = v.c;
+        return {x.x - c.period.x * floor(x.x * c.inversePeriod.x),
+                x.y - c.period.y * floor(x.y * c.inversePeriod.y),
+                x.z - c.period.z * floor(x.z * c.inversePeriod.z)};
+    }
+};
+
+// What the mouse no longer holds stands still, but for what floats.
+struct LetGo {
+    using Index = int;
+    const RigidBody* bodies;
+    SolidMotion* motions;
+    HD void operator()(int s) const {
+        if (bodies[s].mass <= 0) motions[s].velocity = motions[s].acceleration = {0, 0, 0};
+    }
+};
+
+}  // namespace spindrift::LANES

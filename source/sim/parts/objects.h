@@ -1,0 +1,376 @@
+// Elastic objects: who they are, where they are kept, who touches whom.
+#pragma once
+
+#include "scene/sample_object.h"
+#include "sim/object_driver.h"
+#include "sim/parts/object_passes.h"
+#include "sim/object_state.h"
+#include "sim/particles/particle_set.h"
+#include "sim/parts/floating.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace spindrift::LANES {
+
+// Owns the objects and finds who touches whom.
+template <class Device> class Objects : public Part {
+public:
+    Objects(Flow<Device>& flow, Solids<Device>& solids, Floating<Device>& floating)
+        : flow_(flow),
+          device_(flow.device),
+          solids_(solids),
+          floating_(floating),
+          sample_(sampleObjects(flow.scene)) {
+        if (count() == 0) return;
+        const Scene& scene = flow.scene;
+        fillVectors(home_, sample_.positions);
+        fill(mass_, std::vector<real>(sample_.masses.begin(), sample_.masses.end()));
+        fill(radius_, std::vector<real>(sample_.radii.begin(), sample_.radii.end()));
+        fill(object_, sample_.objects), fill(grip_, sample_.grips),
+            fill(atSurface_, sample_.atSurface);
+        std::vector<Material> materials;
+        for (const Object& o : scene.objects) materials.push_back({o.damping, o.breakingStrain});
+        fill(materials_, materials), fill(cuts_, scene.cuts);
+        std::vector<GripKeys> grips;
+        std::vector<MotionKey> keys;
+        for (const Grip& g : scene.grips) {
+            const std::vector<MotionKey> own = motionOf(g);
+            grips.push_back({int(keys.size()), int(keys.size() + own.size())});
+            keys.insert(keys.end(), own.begin(), own.end());
+        }
+        fill(grips_, grips), fill(keys_, keys);
+        given_.resize(vectorSize(padded()));
+        if (solids.floats())
+            press_.resize(vectorSize(padded())), pressedBy_.resize(size_t(padded()));
+        acceleration_.resize(vectorSize(padded())), torn_.resize(sample_.size()),
+            slot_.resize(sample_.size()), speed_.resize(1);
+        bondEnds();
+    }
+    int count() const { return int(sample_.size()); }
+
+    // --- as a part (part.h) ---
+
+    void restart(const RunState& run) {
+        if (count() == 0) return;
+        const Scene& scene = flow_.scene;
+        const ObjectState& state = run.objects;
+        std::vector<Vec3> velocities;
+        for (const int object : sample_.objects)
+            velocities.push_back(scene.objects[size_t(object)].velocity);
+        fillVectors(position_, state.positions.empty() ? sample_.positions : state.positions);
+        fillVectors(velocity_, state.velocities.empty() ? velocities : state.velocities);
+        std::vector<BondEnd> bonds = whole_;
+        std::vector<real> torn(sample_.size(), 0);
+        for (size_t i = 0; i < torn.size(); ++i)
+            for (int b = firstBondOnHost_[i]; b < firstBondOnHost_[i + 1]; ++b)
+                if (!state.broken.empty() && state.broken[size_t(b)])
+                    bonds[size_t(b)].stiffness = 0, torn[i] = 1;
+        fill(bonds_, bonds), fill(torn_, torn);
+        std::vector<int> slots(sample_.size(), -1);
+        fill(slot_, slots);
+        std::vector<Vec3> places;
+        std::vector<int> ids;
+        for (int i = 0; i < count(); ++i)
+            if (sample_.atSurface[size_t(i)] || mayTear(scene, i))
+                places.push_back(sample_.positions[size_t(i)]), ids.push_back(i);
+        sorted_.upload(places, {}, {}, ids);
+        device_.forEach(sorted_.slots(), FetchPlaces{particles(), sorted_.view()});
+    }
+    void save(RunState& run) {
+        if (count() == 0) return;
+        ObjectState& s = run.objects;
+        s.positions = vectors(position_), s.velocities = vectors(velocity_);
+        std::vector<BondEnd> bonds(bonds_.size());
+        device_.download(bonds.data(), bonds_.data(), bonds.size());
+        for (const BondEnd& b : bonds) s.broken.push_back(b.stiffness <= 0);
+    }
+    void refresh() {
+        if (count() > 0) setLaw(flow_.scene, flow_.parameters.soundSpeed);
+    }
+    // s, that springs and contacts bear.
+    double longestStep() const { return longestStep_; }
+    void sorted() {
+        if (count() == 0) return;
+        device_.forEach(sorted_.slots(), FetchPlaces{particles(), sorted_.view()});
+        sorted_.sort(flow_.search.grid());
+        resizeSurface();
+        placeSurface();
+        boxes_.compute(device_, sorted_.view());
+        objectsNearFluid_.invalidate(flow_.fluid.view());
+        for (NeighbourLists* lists : {&fluidNearObjects_, &objectsNearObjects_})
+            lists->invalidate(sorted_.view());
+    }
+    void findNeighbours() {
+        if (count() == 0) return;
+        const Grid& grid = flow_.search.grid();
+        const float reach = reach_ + flow_.search.skin();
+        const Boxes& fluidBoxes = flow_.search.fluidBoxes();
+        const int* fluidCells = flow_.fluid.cellStart();
+        objectsNearFluid_.build(device_, grid, reach, fluidBoxes, nullptr, boxes_,
+                                sorted_.cellStart());
+        fluidNearObjects_.build(device_, grid, reach, boxes_, nullptr, fluidBoxes, fluidCells);
+        objectsNearObjects_.build(device_, grid, reach, boxes_, nullptr, boxes_,
+                                  sorted_.cellStart());
+    }
+    int64_t bytes() const {
+        return objectsNearFluid_.bytes() + fluidNearObjects_.bytes() + objectsNearObjects_.bytes();
+    }
+    // The fastest of them counts as one of the fluid.
+    void findSpeed() {
+        if (count() == 0) return;
+        device_.reduce(
+            count(),
+            FindObjectSpeed{particles(), flow_.clock.data(), real(driver_ ? drivenSpeed_ : 0)},
+            speed_.data());
+        device_.forEach(1, TakeFaster{flow_.extremes.data(), speed_.data()});
+    }
+    void addForces(Plan& plan, Initial initial) {
+        plan.add(
+            "contact", [this] { touch(); }, initial, whyNone());
+    }
+    void move(Plan& plan, ShareOfStep share) {
+        if (share.drifts)
+            plan.add(
+                "objects", [this] { moveOn(); }, Initial::No, whyNone());
+    }
+
+    // What is put in order with the fluid.
+    ParticleSet<Device>& surfaceSet() { return sorted_; }
+    // From now on; null: bonds and grips again.
+    void drive(ObjectDriver* driver) {
+        driver_ = driver, origin_ = toDouble(flow_.scene.domain.min);
+        if (!driver) return;
+        const double time = flow_.readClock().time;
+        for (auto* field : {&target_, &impulse_}) field->resize(vectorSize(padded()));
+        fillVectors(acceleration_, std::vector<Vec3>(sample_.size()));
+        exchanged_ = time, arrival_ = -1;
+        exchange(time);
+    }
+    bool isDriven() const { return driver_; }
+    // When its time has come; says whether it had.
+    bool exchange(double time) {
+        if (time < arrival_) return false;
+        const double passed = time - exchanged_;
+        std::vector<Vec3d> forces =
+            passed > 0 ? doubles(impulse_) : std::vector<Vec3d>(sample_.size());
+        for (Vec3d& f : forces) f = (passed > 0 ? 1 / passed : 0) * f;
+        const std::vector<Vec3d> before = doubles(position_);
+        std::vector<Vec3d> positions = before, velocities = doubles(velocity_);
+        for (Vec3d& x : positions) x = x + origin_;
+        driver_->exchange(time, forces, positions, velocities);
+        CHECK(positions.size() == sample_.size() && velocities.size() == sample_.size());
+        for (Vec3d& x : positions) x = x - origin_;
+        drivenSpeed_ = 0;
+        for (size_t i = 0; i < before.size(); ++i)
+            drivenSpeed_ =
+                std::max(drivenSpeed_, length(positions[i] - before[i]) / driver_->interval());
+        fillVectors(target_, positions), fillVectors(velocity_, velocities),
+            fillVectors(impulse_, std::vector<Vec3d>(sample_.size()));
+        exchanged_ = time, arrival_ = time + driver_->interval();
+        return true;
+    }
+    void writeVertices(Vertex* out, float fluidSpacing) {
+        device_.forEach(count(), WriteObjectVertices{particles(), out, real(fluidSpacing / 2)});
+    }
+
+private:
+    const char* whyNone() const { return count() > 0 ? "" : "there are no objects"; }
+    // Of contacts, as live knobs say; `sound` in m/s.
+    void setLaw(const Scene& scene, double sound) {
+        const Contact& knobs = scene.contact;
+        const double m = particleMass(scene), h = supportRadius(scene) / 2, rate = 0.4 * sound / h;
+        const double k = knobs.stiffness > 0 ? double(knobs.stiffness) : m * rate * rate,
+                     critical = 2 * std::sqrt(k * m);
+        law_.stiffness = real(k), law_.damping = real(knobs.damping * critical),
+        law_.shear = real(knobs.shear * critical);
+        auto closer = [&](int n) {
+            return std::exp(knobs.steepness * (1 - double(n) / ContactLaw::pieces));
+        };
+        law_.first = real(closer(0));
+        for (int n = 0; n < ContactLaw::pieces; ++n)
+            law_.bends[n] =
+                real(closer(n + 1) - closer(n) - (n > 0 ? closer(n) - closer(n - 1) : 0));
+        law_.influence = knobs.influence, law_.fluidRadius = scene.simulation.spacing / 2,
+        law_.perMass = real(1 / m);
+        float largest = 0;
+        for (const float r : sample_.radii) largest = std::max(largest, r);
+        reach_ = std::max(knobs.influence * (scene.simulation.spacing / 2 + largest), 2 * largest);
+        longestStep_ = stableStep(scene, k * std::exp(double(knobs.steepness)));
+    }
+    void placeSurface() { device_.forEach(sorted_.slots(), PlaceSurface{particles(), surface()}); }
+    // Forces on fluid and objects where they are, and on solids that float.
+    void touch() {
+        const View v = flow_.view();
+        const ContactView c = contactView(v);
+        device_.forEach(v.fluid.slots, PushFluid{c});
+        device_.forEach(sorted_.slots(), PushObjects{c});
+        if (driver_) return;
+        device_.forEach(count(), StretchBonds{v,
+                                              particles(),
+                                              {force_.data()},
+                                              materials_.data(),
+                                              cuts_.data(),
+                                              int(cuts_.size()),
+                                              floating_.bodies(),
+                                              floating_.springs(),
+                                              presses()});
+        if (solids_.floats())
+            floating_.addTouches(count(), [&](int solid) {
+                return SumPresses{v, particles(), presses(), solid};
+            });
+    }
+    void moveOn() {
+        const View v = flow_.view();
+        if (driver_)
+            device_.forEach(count(), FollowDriver{v.state,
+                                                  particles(),
+                                                  {force_.data()},
+                                                  {target_.data()},
+                                                  {impulse_.data()},
+                                                  arrival_});
+        else
+            device_.forEach(count(), MoveObjects{v,
+                                                 particles(),
+                                                 grips_.data(),
+                                                 keys_.data(),
+                                                 floating_.bodies(),
+                                                 floating_.held(),
+                                                 {given_.data()}});
+        placeSurface();
+        if (floating_.held() >= 0 && !driver_)
+            floating_.feelStops(count(), SumStops{particles(), {given_.data()}});
+    }
+    ObjectParticles particles() const {
+        return {count(),        {position_.data()}, {velocity_.data()}, {acceleration_.data()},
+                {home_.data()}, {mass_.data()},     {radius_.data()},   {torn_.data()},
+                object_.data(), grip_.data(),       firstBond_.data(),  atSurface_.data(),
+                bonds_.data(),  slot_.data()};
+    }
+    ObjectSurface surface() const {
+        const Particles sorted = sorted_.view();
+        return {sorted.slots,
+                sorted.id,
+                sorted.position,
+                {surfaceVelocity_.data()},
+                {surfaceHome_.data()},
+                {surfaceRadius_.data()},
+                {surfaceObject_.data()},
+                {surfaceTorn_.data()},
+                {force_.data()}};
+    }
+    ContactView contactView(const View& v) {
+        const VectorField places = sorted_.view().position;
+        ContactView c{v,
+                      surface(),
+                      {objectsNearFluid_.data(), sorted_.cellStart(), places},
+                      {fluidNearObjects_.data(), v.fluidNearFluid.cellStart, v.fluid.position},
+                      {objectsNearObjects_.data(), sorted_.cellStart(), places},
+                      law_};
+        c.v.c.support = real(reach_), c.v.c.support2 = real(reach_ * reach_),
+        c.v.c.inverseSupport2 = real(1 / (reach_ * reach_));
+        return c;
+    }
+    void resizeSurface() {
+        const int slots = sorted_.slots();
+        for (auto* field : {&surfaceVelocity_, &surfaceHome_, &force_})
+            field->resize(vectorSize(slots));
+        for (auto* field : {&surfaceRadius_, &surfaceObject_, &surfaceTorn_})
+            field->resize(size_t(slots));
+    }
+    // Both ends of each bond, beside those of the same particle.
+    void bondEnds() {
+        std::vector<int> first(sample_.size() + 1, 0);
+        for (const Bond& b : sample_.bonds) ++first[size_t(b.a) + 1], ++first[size_t(b.b) + 1];
+        for (size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
+        whole_.resize(2 * sample_.bonds.size());
+        std::vector<int> next = first;
+        for (const Bond& b : sample_.bonds) {
+            whole_[size_t(next[size_t(b.a)]++)] = {b.b, b.length, b.stiffness};
+            whole_[size_t(next[size_t(b.b)]++)] = {b.a, b.length, b.stiffness};
+        }
+        firstBondOnHost_ = first;
+        fill(firstBond_, first);
+    }
+    // A particle on its springs swings at no more than sqrt(2 sum k / m) and is slowed at no more
+    // than 2 sum c / m.
+    double stableStep(const Scene& scene, double contact) const {
+        double fastest = 0;
+        for (size_t i = 0; i < sample_.size(); ++i) {
+            const double m = sample_.masses[i],
+                         share = scene.objects[size_t(sample_.objects[i])].damping;
+            double k = 6 * contact, c = 6 * double(law_.damping + law_.shear);
+            for (int b = firstBondOnHost_[i]; b < firstBondOnHost_[i + 1]; ++b) {
+                const double spring = whole_[size_t(b)].stiffness;
+                k += 2 * spring, c += 2 * 2 * share * std::sqrt(spring * m / 2);
+            }
+            fastest = std::max(fastest, std::sqrt(k / m) + c / m);
+        }
+        return 1.5 / fastest;  // it is stable to 2
+    }
+    bool mayTear(const Scene& scene, int i) const {
+        return !scene.cuts.empty() ||
+               scene.objects[size_t(sample_.objects[size_t(i)])].breakingStrain > 0;
+    }
+    ContactForces presses() { return {{press_.data()}, {pressedBy_.data()}}; }
+    int padded() const { return (count() + clusterSize - 1) / clusterSize * clusterSize; }
+    template <class V>
+    void fillVectors(Buffer<real, Device>& buffer, const std::vector<V>& values) {
+        std::vector<real> x(vectorSize(padded()));
+        for (size_t i = 0; i < values.size(); ++i)
+            for (int k = 0; k < 3; ++k) x[vectorOffset(int(i), k)] = real(values[i][k]);
+        fill(buffer, x);
+    }
+    std::vector<Vec3d> doubles(const Buffer<real, Device>& buffer) const {
+        std::vector<real> x(buffer.size());
+        device_.download(x.data(), buffer.data(), x.size());
+        std::vector<Vec3d> out(sample_.size());
+        for (size_t i = 0; i < out.size(); ++i)
+            for (int k = 0; k < 3; ++k) out[i][k] = double(x[vectorOffset(int(i), k)]);
+        return out;
+    }
+    std::vector<Vec3> vectors(const Buffer<real, Device>& buffer) const {
+        std::vector<Vec3> out;
+        for (const Vec3d& v : doubles(buffer)) out.push_back(toFloat(v));
+        return out;
+    }
+    template <class T> void fill(Buffer<T, Device>& buffer, const std::vector<T>& host) {
+        buffer.resize(host.size());
+        device_.upload(buffer.data(), host.data(), host.size());
+    }
+
+    Flow<Device>& flow_;
+    Device& device_;
+    Solids<Device>& solids_;
+    Floating<Device>& floating_;
+    ObjectSample sample_;
+    std::vector<BondEnd> whole_;  // as at the start
+    std::vector<int> firstBondOnHost_;
+    ContactLaw law_{};
+    float reach_ = 0;  // m, of the longest contact
+    double longestStep_ = 1e9;
+    ObjectDriver* driver_ = nullptr;
+    double exchanged_ = 0,
+           arrival_ = 0;  // s: when it was asked last, and when particles are to be where it said
+    double drivenSpeed_ = 0;  // m/s, the most on the way there
+    Vec3d origin_;            // m, the domain's lower corner
+    Buffer<real, Device> target_{device_}, impulse_{device_}, press_{device_}, pressedBy_{device_},
+        given_{device_};
+    Buffer<real, Device> position_{device_}, velocity_{device_}, acceleration_{device_},
+        home_{device_}, mass_{device_}, radius_{device_}, torn_{device_};
+    Buffer<int, Device> object_{device_}, grip_{device_}, firstBond_{device_}, slot_{device_};
+    Buffer<uint8_t, Device> atSurface_{device_};
+    Buffer<BondEnd, Device> bonds_{device_};
+    Buffer<Material, Device> materials_{device_};
+    Buffer<Cut, Device> cuts_{device_};
+    Buffer<GripKeys, Device> grips_{device_};
+    Buffer<MotionKey, Device> keys_{device_};
+    Buffer<Extremes, Device> speed_{device_};
+    ParticleSet<Device> sorted_{device_, Kind::Objects};
+    Buffer<real, Device> surfaceVelocity_{device_}, surfaceHome_{device_}, surfaceRadius_{device_},
+        surfaceObject_{device_}, surfaceTorn_{device_}, force_{device_};
+    Boxes boxes_;
+    NeighbourLists objectsNearFluid_, fluidNearObjects_, objectsNearObjects_;
+};
+
+}  // namespace spindrift::LANES

@@ -1,0 +1,47 @@
+// Features that some scenes have: solids, what floats, elastic objects, surface tension, steps of
+// their own for particles. The step asks all parts in turn; a part that a scene does without says
+// why, and has no pass run for it. Adding a feature is adding its part to SimulationOn.
+#pragma once
+
+#include "sim/run_state.h"
+#include "sim/step/plan.h"
+
+namespace spindrift::LANES {
+
+// How much of a step's kick a part gives to what it moves, in halves, and whether it moves it.
+struct ShareOfStep {
+    int halvesOfKick;
+    bool drifts;
+};
+
+// What a part may answer; what it doesn't is nothing.
+struct Part {
+    // Live knobs may have changed; then, how long a step (s) may be because of all parts.
+    void refresh() {}
+    void knowLongestStep(double) {}
+    double longestStep() const { return 1e9; }
+    // From a state; and what it has to give to one.
+    void restart(const RunState&) {}
+    void save(RunState&) {}
+    // Fluid has been put in order; neighbours are looked for; how fast anything is that the time
+    // step has to know of, m/s, joins the fluid's extremes.
+    void sorted() {}
+    void findNeighbours() {}
+    void findSpeed() {}
+    // The most that anything of it moves at, m/s: what lists have to bear.
+    double fastestSpeed() const { return 0; }
+    // Bytes that the host holds for it.
+    int64_t bytes() const { return 0; }
+
+    // Rows of the plan: before anything is looked for, half a step ahead or not; between order and
+    // lists; on top of the forces; things that move; what rates of density ask for, by the
+    // velocities that forces have led to; and what fluid runs into.
+    void place(Plan&, Initial, bool /*halfWay*/) {}
+    void choose(Plan&, Initial) {}
+    void addForces(Plan&, Initial) {}
+    void move(Plan&, ShareOfStep) {}
+    void addRates(Plan&) {}
+    void collide(Plan&) {}
+};
+
+}  // namespace spindrift::LANES

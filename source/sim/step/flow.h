@@ -1,0 +1,172 @@
+// What every pass works on: fluid and walls on one device, how their neighbours are found, the
+// parameters of a step, and the clock.
+#pragma once
+
+#include "device/buffer.h"
+#include "scene/formulation.h"
+#include "sim/physics/integrate.h"
+#include "sim/neighbours/neighbour_search.h"
+#include "sim/particles/particle_set.h"
+#include "sim/run_state.h"
+#include "sim/simulation.h"
+#include "sim/physics/step_parameters.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+#include <vector>
+
+namespace spindrift::LANES {
+
+template <class Device> struct Flow {
+    Flow(const Scene& s, const RunState& state, Device d)
+        : device(std::move(d)),
+          scene(s),
+          extent(state.start),
+          fluidCount(int(state.particles.positions.size())),
+          wallCount(int(state.particles.walls.size())),
+          wallsAtHome(state.particles.walls),
+          solidSizes(state.particles.solidSizes),
+          bodies(state.particles.bodies),
+          search(device, makeGrid(s, size_t(fluidCount) + size_t(wallCount))) {
+        if (carriesDensity(scene)) fluid.carryDensity();
+        if (shiftsParticles(scene)) fluid.shift(), walls.haveDensity();
+        if (scene.time.integrator == Integrator::VelocityVerlet) fluid.keepVelocity();
+        if (scene.time.integrator == Integrator::PredictorCorrector) fluid.keepState();
+        uploadWalls();
+        clock.resize(1);
+        extremes.resize(1);
+    }
+    Flow(const Flow&) = delete;
+
+    View view() {
+        View v{};
+        v.fluid = fluid.view(), v.walls = walls.view();
+        search.show(v, fluid.cellStart(), walls.cellStart());
+        v.c = parameters;
+        v.c.stirCenter = toVector(stir.center - scene.domain.min);
+        v.c.stirVelocity = toVector(stir.velocity);
+        v.c.stirRadius = stir.radius, v.c.stirRate = stir.rate, v.c.stirPull = stir.pull;
+        v.state = clock.data();
+        v.solids = solids, v.solidCount = solidCount, v.screens = screens;
+        v.blocks = blocks;
+        if (allActive) v.fluid.active = v.walls.active = nullptr;
+        return v;
+    }
+
+    template <class P> void onFluid() { device.forEach(fluid.slots(), P{view()}); }
+    template <class P> void onWalls() { device.forEach(walls.slots(), P{view()}); }
+    // Of lists that hold each pair once where they do, and of all neighbours otherwise.
+    template <class P> void onPairsOrFluid() {
+        if constexpr (NeighbourSearch<Device>::keepsLists)
+            if (usesHalfLists()) return search.overPairs(P{view()});
+        onFluid<P>();
+    }
+    // Of active particles; forces on solids may be asked for at any time.
+    void findNeighbours() {
+        using Search = NeighbourSearch<Device>;
+        search.find(view(), usesHalfLists(),
+                    !wallsCarryPressure() ? Search::OfWalls::None
+                    : solidCount > 0      ? Search::OfWalls::All
+                                          : Search::OfWalls::Active);
+    }
+    // Where all that pairs do they do to both: carried density changes at rates that differ, and a
+    // limit, which the classic formulation has, is one on a part of the whole.
+    bool usesHalfLists() const {
+        return NeighbourSearch<Device>::keepsLists && !carriesDensity(scene) &&
+               !factsOf(scene).isHistorical && scene.simulation.accelerationLimit <= 0;
+    }
+    bool wallsCarryPressure() const { return wallCount > 0 && !factsOf(scene).isHistorical; }
+    // Or there are terms that would ask.
+    bool fluidSticks() const {
+        const bool asked =
+            isMultiFluid(scene) || scene.simulation.pressureForm == PressureForm::Mean;
+        return wallsCarryPressure() && (asked || largestViscosity(scene) > 0 || letsSlip(scene));
+    }
+    // s, that a step can take.
+    double longestStep() const {
+        return parameters.fixedStep > 0
+                   ? double(parameters.fixedStep)
+                   : double(min(acousticStep(parameters, 0), parameters.maxStep));
+    }
+    // At the beginning those of the placement, else by the equation of state from the pressures.
+    std::vector<float> densitiesOf(const RunState& state) const {
+        if (!carriesDensity(scene) || !state.densities.empty()) return state.densities;
+        std::vector<float> densities = state.particles.densities;
+        for (size_t i = 0; i < densities.size() && !bodies.empty(); ++i)  // of the scene's fluid
+            densities[i] *=
+                scene.fluid.restDensity / restDensity(scene, scene.fluid.bodies[bodies[i]]);
+        for (size_t i = 0; i < state.particles.pressures.size(); ++i) {
+            const double power =
+                std::max(1 + double(state.particles.pressures[i]) / parameters.stiffness, 0.1);
+            const float density =
+                float(parameters.restDensity * std::pow(power, 1.0 / parameters.gamma));
+            if (i == densities.size()) densities.push_back(density);
+            if (densities[i] == 0) densities[i] = density;
+        }
+        densities.resize(state.particles.positions.size(), float(parameters.restDensity));
+        return densities;
+    }
+    StepState readClock() const {
+        StepState s;
+        device.download(&s, clock.data(), 1);
+        return s;
+    }
+    void setClock(const StepState& s) { device.upload(clock.data(), &s, 1); }
+    // A mixture's knobs, particle by particle.
+    void fillMixture() {
+        if (!isMultiFluid(scene) || fluid.slots() == 0) return;
+        CHECK(int(bodies.size()) == fluidCount);
+        std::vector<float> ratios, viscosities;
+        for (const uint16_t body : bodies) {
+            ratios.push_back(restDensity(scene, scene.fluid.bodies[body]) /
+                             scene.fluid.restDensity);
+            viscosities.push_back(viscosity(scene, scene.fluid.bodies[body]));
+        }
+        fluid.fillMixture(ratios, viscosities);
+    }
+    void uploadWalls() { walls.upload(wallsAtHome, {}, {}, fluidCount); }
+    void addBuffers() {
+        fluid.addForces(usesHalfLists() && hasMixingForces(scene),
+                        scene.fluid.surfaceTension > 0 || showsSurface);
+    }
+
+    Device device;
+    Scene scene;
+    FluidExtent extent;
+    int fluidCount, wallCount;
+    std::vector<Vec3> wallsAtHome;  // as in Placement
+    std::vector<int> solidSizes;
+    std::vector<uint16_t> bodies;  // of a mixture: which one each particle is of
+    StepParameters parameters{};
+    Stir stir;
+    ParticleSet<Device> fluid{device, Kind::Fluid}, walls{device, Kind::Walls};
+    NeighbourSearch<Device> search;
+    Buffer<StepState, Device> clock{device};
+    Buffer<Extremes, Device> extremes{device};
+    bool showsSurface = false;  // a picture has asked
+    // What parts show to all passes.
+    SolidState* solids = nullptr;
+    int solidCount = 0;
+    const Screens* screens = nullptr;
+    Blocks blocks{};
+    bool allActive = false;                                    // now: flags are needless then
+    std::function<double()> fastestPart = [] { return 0.0; };  // m/s
+};
+
+// Where it is less than what keeps fluid calm anyway, it makes no difference.
+template <class Device> const char* whyViscosityIsNotWeighed(const Flow<Device>& flow) {
+    const Scene& scene = flow.scene;
+    if (largestViscosity(scene) <= 0 || factsOf(scene).isHistorical)
+        return "there is no laminar viscosity";
+    if (viscosityForm(scene) != ViscosityForm::Monaghan)
+        return "only Monaghan's form of viscosity asks for it";
+    if (scene.time.mode == TimeMode::Local) return "steps are local (time.mode)";
+    const double nu = largestViscosity(scene) / scene.fluid.restDensity,
+                 reach = double(flow.parameters.soundSpeed) * double(flow.parameters.support),
+                 numerical = std::max(1e-3, scene.fluid.artificialViscosity / 16.0) * reach;
+    return nu < numerical ? "viscosity is less than 1e-3 c R, or than the artificial one" : "";
+}
+
+}  // namespace spindrift::LANES

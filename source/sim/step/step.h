@@ -1,0 +1,281 @@
+// What a step consists of: the passes that a scene needs, in order. What it doesn't need isn't in
+// the plan.
+#pragma once
+
+#include "scene/formulation.h"
+#include "sim/parts/block_time_steps.h"
+#include "sim/step/flow.h"
+#include "sim/parts/part.h"
+#include "sim/step/plan.h"
+#include "sim/step/step_length.h"
+
+#include <algorithm>
+#include <string>
+#include <tuple>
+#include <utility>
+
+namespace spindrift::LANES {
+
+// Calls f(part) for each.
+template <class Parts, class F> void forEachPart(const Parts& parts, const F& f) {
+    std::apply([&](auto&... part) { (f(part), ...); }, parts);
+}
+
+// `Parts`: a tuple of references, in the order in which they act.
+template <class Device, class Kernel, class Parts> class StepMaker {
+public:
+    StepMaker(Flow<Device>& flow, BlockTimeSteps<Device>& blocks, const Parts& parts)
+        : flow_(flow), scene_(flow.scene), blocks_(blocks), parts_(parts) {}
+
+    Plan plan() {
+        switch (scene_.time.integrator) {
+            case Integrator::SymplecticEuler:
+                blocks_.areOn() ? blockTimeSteps() : symplecticEuler();
+                break;
+            case Integrator::VelocityVerlet:
+                velocityVerlet();
+                break;
+            case Integrator::PredictorCorrector:
+                predictorCorrector();
+                break;
+            case Integrator::Split:
+                split();
+                break;
+        }
+        return std::move(plan_);
+    }
+
+private:
+    using Pass = void (Flow<Device>::*)();
+    static constexpr bool keepsLists = NeighbourSearch<Device>::keepsLists;
+    static constexpr const char* noLists = "rows of cells are walked instead of lists";
+
+    // --- integrators ---
+
+    // v += a dt, x += v dt.
+    void symplecticEuler() {
+        evaluateForces(Initial::Yes);
+        chooseStep();
+        move({2, true});
+        advance<Kick, Drift>({"integrate", "kick", "drift"});
+        end();
+    }
+    // Verlet 1967 with velocities: forces at the end of the step with the velocity foreseen there,
+    // of which then half is taken back for half of the new acceleration.
+    void velocityVerlet() {
+        chooseStep();
+        move({1, true});
+        advance<HalfKick, Drift | KeepVelocity | KickOn>({"integrate", "kick", "drift"});
+        evaluateForces(Initial::Yes);
+        move({1, false});
+        add("second kick", onFluid<Integrate<Resume | HalfKick>>);
+        end();
+    }
+    // Half a step ahead; from there the forces and then, with the mean velocity, the rates of the
+    // whole step (Monaghan 1989; the mean of old and new velocity keeps oscillations from growing,
+    // as in a leapfrog).
+    void predictorCorrector() {
+        evaluateForces(Initial::Yes);
+        chooseStep();
+        advance<0, Keep | HalfDrift | KickOn>({"predict", "", "predict"});
+        evaluateForces(Initial::No);
+        plan_.add(
+            "extremes", [&flow = flow_] { boundCorrection(flow); }, Initial::No,
+            keepsLists ? "" : noLists);
+        move({2, true});
+        advance<Resume | HalfKick, Resume | Drift | KickOn>({"correct", "second kick", "correct"});
+        end();
+    }
+    // Viscosity and external forces lead to the densities of whose pressure the rest of the step
+    // is.
+    void split() {
+        evaluateForces(Initial::Yes);
+        chooseStep();
+        move({2, true});
+        add("kick", onFluid<Integrate<Kick>>);
+        addRate();
+        add("foresee density", onFluid<Integrate<DriftDensity>>);
+        add("equation of state", onFluid<ApplyEquationOfState>);
+        add("walls", wallPass(), Initial::No, whyNoWallPressure());
+        add("pressure",
+            onFluid<ComputeForces<Kernel, inner, TermList<PressureForce>, Forces::Alone>>);
+        plan_.add(
+            "extremes", [&flow = flow_] { boundSplitMove(flow); }, Initial::No,
+            keepsLists ? "" : noLists);
+        add("integrate", onFluid<Integrate<Kick | Drift>>);
+        end();
+    }
+    // Symplectic Euler from one substep to the next, until all particles have ended their steps.
+    void blockTimeSteps() {
+        plan_.beginLoop();
+        blocks_.begin(plan_);
+        evaluateForces(Initial::Yes);
+        blocks_.kick(plan_);
+        stir();
+        blocks_.chooseSubstep(plan_);
+        if (!carriesDensity(scene_)) {
+            add("drift", onFluid<Integrate<Drift>>);
+        } else {
+            addRate();
+            add("drift", onFluid<Integrate<Drift | DriftDensity>>);
+        }
+        end();
+        plan_.endLoop([&blocks = blocks_] { return blocks.atStepEnd(); });
+    }
+
+    // --- what integrators consist of ---
+
+    // Acceleration of where the particles are.
+    void evaluateForces(Initial initial) {
+        forEachPart(parts_,
+                    [&](auto& part) { part.place(plan_, initial, initial == Initial::No); });
+        plan_.add(
+            "sort",
+            [&flow = flow_, &blocks = blocks_, parts = parts_] {
+                if (flow.search.holds()) return;
+                flow.search.renew(flow.scene.compute.skin, supportRadius(flow.scene),
+                                  blocks.shareAwake());
+                flow.search.sort(flow.fluid);
+                forEachPart(parts, [](auto& part) { part.sorted(); });
+                flow.search.invalidate(flow.view());
+            },
+            initial);
+        forEachPart(parts_, [&](auto& part) { part.choose(plan_, initial); });
+        plan_.add(
+            "neighbours",
+            [&flow = flow_, parts = parts_] {
+                flow.findNeighbours();
+                forEachPart(parts, [](auto& part) { part.findNeighbours(); });
+            },
+            initial, keepsLists ? "" : noLists);
+        carriesDensity(scene_) ? add("equation of state", onFluid<ApplyEquationOfState>, initial)
+                               : add("density", onPairsOrFluid<ComputeDensity<Kernel>>, initial);
+        add("walls", wallPass(), initial, whyNoWallPressure());
+        add("surroundings",
+            carriesDensity(scene_) ? onFluid<WeighViscosity<Kernel, Lists::All>>
+                                   : onPairsOrFluid<WeighViscosity<Kernel, inner>>,
+            initial, whyViscosityIsNotWeighed(flow_));
+        add("forces", forcePass(), initial);
+        forEachPart(parts_, [&](auto& part) { part.addForces(plan_, initial); });
+    }
+    void chooseStep() {
+        const bool needed =
+            keepsLists || shiftsParticles(scene_) || flow_.parameters.fixedStep <= 0;
+        plan_.add(
+            "extremes",
+            [&flow = flow_, parts = parts_] {
+                factsOf(flow.scene).fillsSpace ? findExtremes<true>(flow)
+                                               : findExtremes<false>(flow);
+                forEachPart(parts, [](auto& part) { part.findSpeed(); });
+            },
+            Initial::No, needed ? "" : "the time step is fixed (time.mode)");
+        plan_.add("time step", [&flow = flow_] { chooseTimeStep(flow); });
+        stir();
+    }
+    void stir() {
+        add("stir", onFluid<StirFluid>, Initial::No,
+            flow_.stir.radius > 0 ? "" : "nothing is stirred");
+    }
+    // Solids and objects, by the forces that were found last; also those that the mouse drags.
+    void move(ShareOfStep share) {
+        forEachPart(parts_, [&](auto& part) { part.move(plan_, share); });
+    }
+    struct Names {
+        const char *both, *kick, *drift;
+    };
+    // In one pass; where density is carried in two, between which its rate comes.
+    template <unsigned kick, unsigned drift> void advance(Names names) {
+        if (!carriesDensity(scene_)) return add(names.both, onFluid<Integrate<kick | drift>>);
+        if constexpr (kick != 0) add(names.kick, onFluid<Integrate<kick>>);
+        addRate();
+        add(names.drift, factsOf(scene_).fillsSpace
+                             ? onFluid<Integrate<drift | DriftDensity | DriftShifted | KeepVolume>>
+                         : shiftsParticles(scene_)
+                             ? onFluid<Integrate<drift | DriftDensity | DriftShifted>>
+                             : onFluid<Integrate<drift | DriftDensity>>);
+    }
+    void addRate() {
+        forEachPart(parts_, [&](auto& part) { part.addRates(plan_); });
+        add(shiftsParticles(scene_) ? "transport" : "density rate", ratePass());
+    }
+    void end() {
+        noteTerms(OptionalTerms{});
+        noteTerms(Mixing{});
+        forEachPart(parts_, [&](auto& part) { part.collide(plan_); });
+    }
+
+    // --- passes of this scene ---
+
+    template <class P> static constexpr Pass onFluid = &Flow<Device>::template onFluid<P>;
+    template <class P> static constexpr Pass onPairsOrFluid =
+        &Flow<Device>::template onPairsOrFluid<P>;
+    // The first pass over the fluid's neighbours in a step makes inner lists for the others.
+    static constexpr Lists inner = buildsInner ? Lists::Inner : Lists::All,
+                           buildInner = buildsInner ? Lists::BuildInner : Lists::All;
+
+    Pass wallPass() const {
+        if (shiftsParticles(scene_)) return wallPass<true>();
+        return wallPass<false>();
+    }
+    template <bool dense> Pass wallPass() const {
+        return flow_.fluidSticks()
+                   ? &Flow<Device>::template onWalls<ExtrapolateToWalls<Kernel, true, dense>>
+                   : &Flow<Device>::template onWalls<ExtrapolateToWalls<Kernel, false, dense>>;
+    }
+    Pass forcePass() const {
+        if (factsOf(scene_).fillsSpace)
+            return chooseTerms(scene_, forces<buildInner>, TermList<CorrectedPressureForce>{},
+                               TermList<LaminarViscosity<ViscosityForm::Morris>>{});
+        if (factsOf(scene_).isHistorical)
+            return chooseTerms(scene_, forces<inner>, TermList<PressureForce>{},
+                               TermList<ClassicViscosity>{});
+        return withViscosityForm(scene_, [this](auto form) { return forcesOf<form.value>(); });
+    }
+    template <ViscosityForm form> Pass forcesOf() const {
+        if (scene_.time.integrator == Integrator::Split)
+            return forces<buildInner>(Viscosities<form>{});
+        if (isMultiFluid(scene_))
+            return forcesBy(TermList<PressureForce, MixtureViscosity<form>>{});
+        if (!carriesDensity(scene_) && scene_.simulation.pressureForm == PressureForm::Mean)
+            return pairForces(
+                TermList<MeanPressureForce, LaminarViscosity<form>, ArtificialViscosity>{});
+        return chooseTerms(
+            scene_, [this](auto terms) { return forcesBy(terms); }, TermList<PressureForce>{},
+            Viscosities<form>{});
+    }
+    template <class Terms> Pass forcesBy(Terms terms) const {
+        return carriesDensity(scene_) ? forces<buildInner>(terms) : pairForces(terms);
+    }
+    template <class Terms> static Pass pairForces(Terms) {
+        return onPairsOrFluid<ComputeForces<Kernel, inner, Terms>>;
+    }
+    template <Lists lists> static constexpr auto forces = [](auto terms) -> Pass {
+        return onFluid<ComputeForces<Kernel, lists, decltype(terms)>>;
+    };
+    Pass ratePass() const {
+        if (factsOf(scene_).fillsSpace) return onFluid<ComputeTransport<Kernel, false>>;
+        return shiftsParticles(scene_) ? onFluid<ComputeTransport<Kernel, true>>
+                                       : onFluid<ComputeDensityRate<Kernel>>;
+    }
+    const char* whyNoWallPressure() const {
+        if (flow_.wallCount == 0) return "there are no boundary particles";
+        return flow_.wallsCarryPressure() ? ""
+                                          : "walls have no pressure in the classic formulation";
+    }
+
+    void add(const char* name, Pass pass, Initial initial = Initial::No, const char* skipped = "") {
+        plan_.add(
+            name, [&flow = flow_, pass] { (flow.*pass)(); }, initial, skipped);
+    }
+    template <class... Ts> void noteTerms(TermList<Ts...>) {
+        (plan_.note(std::string("forces: ") + Ts::name, Ts::skipped(scene_)), ...);
+    }
+
+    Flow<Device>& flow_;
+    const Scene& scene_;
+    BlockTimeSteps<Device>& blocks_;
+    Parts parts_;
+    Plan plan_;
+};
+
+}  // namespace spindrift::LANES
