@@ -146,7 +146,7 @@ void markFront(std::vector<Point>& points) {
                   });
 }
 
-// Worth to be tried finer: the front of a resolution, and who is nearly on it.
+// Worth to be tried finer: the front of a resolution, and what is nearly on it.
 std::vector<Variant> survivors(std::vector<Point> points, int resolution) {
     std::erase_if(points, [&](const Point& p) {
         return p.run.resolution != resolution || !p.competes || !std::isfinite(p.error());

@@ -10,10 +10,10 @@ struct Task {
     std::atomic<bool> unwanted = false;
 };
 
-// What ends a task that is unwanted. No mistake of anybody's.
+// What ends a task that is unwanted. That is no mistake.
 struct Unwanted {};
 
-// The task of this thread; null: nobody looks.
+// The task of this thread; null: none is watched.
 inline thread_local Task* currentTask = nullptr;
 
 // Throws Unwanted.

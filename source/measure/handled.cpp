@@ -124,7 +124,7 @@ bool HandlingJudge::isIn(const Tube& tube, const std::vector<Vec3>& places, Vec3
     return in;
 }
 
-// Who has been at an open end may be anywhere later.
+// What has been at an open end may be anywhere later.
 std::string HandlingJudge::leak(Simulation& simulation, const std::vector<Particle>& fluid) {
     const double time = simulation.clock().time, near = 2 * double(scene_.simulation.spacing);
     for (const Cut& cut : scene_.cuts)

@@ -44,7 +44,7 @@ private:
 class HandlingJudge {
 public:
     HandlingJudge(const Scene&, Simulation&);
-    // "" while all is well. `hand`: the fastest that somebody's hand was, m/s.
+    // "" while all is well. `hand`: the fastest that the hand was, m/s.
     std::string look(Simulation&, double hand);
 
 private:

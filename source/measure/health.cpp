@@ -13,7 +13,7 @@ namespace spindrift {
 namespace {
 
 // Upper estimate of the speed of sound, m/s: as the simulation chooses it, for a fall through the
-// whole domain, and where nobody named one at least under the earth's gravity, so that stirring
+// whole domain, and where none is named at least under the earth's gravity, so that stirring
 // calm fluid is no alarm.
 double mostSoundSpeed(const Scene& scene) {
     const Vec3d size = toDouble(scene.domain.max - scene.domain.min);

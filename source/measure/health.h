@@ -31,12 +31,12 @@ public:
     // Judges what was just measured. WentBack: the simulation stands at an earlier time, and `m` is
     // measured anew. GaveUp: it stands where it failed.
     Finding look(Measurement& m);
-    // A state of the run that somebody else has fetched.
+    // A state of the run that other code has fetched.
     void keep(RunState);
 
     // One line for the user about the last look(), "" when there is nothing to say.
     const std::string& said() const { return said_; }
-    // After GaveUp: who is to blame, the worst first; those without a finite place with their last
+    // After GaveUp: what is to blame, the worst first; those without a finite place with their last
     // one.
     const std::vector<Particle>& culprits() const { return culprits_; }
     const RunState& lastGood() const {

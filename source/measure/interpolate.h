@@ -21,7 +21,7 @@ struct Surroundings {
     Beyond beyond[3] = {Nothing, Nothing, Nothing};
 };
 
-// Whether a particle is seen from a point, or from an image of one; all are where nobody asks.
+// Whether a particle is seen from a point, or from an image of one; all are where that isn't asked.
 using Sees = std::function<bool(Vec3d particle, Vec3d from)>;
 
 // Beside which points a particle lies: cells as long as a radius know the points that a particle in

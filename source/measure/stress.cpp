@@ -384,7 +384,7 @@ bool turnFluids(Scene& s, uint64_t seed) {
 }
 
 // One in four has solids that float, one in four elastic objects, where that makes sense. Whether
-// there are any: they have energy that nobody counts.
+// there are any: they have energy that is not counted.
 bool turnThings(Scene& s, uint64_t seed) {
     Dice dice{std::mt19937_64(seed + 0x2545f4914f6cdd1du)};
     const Scene without = s;
@@ -510,7 +510,7 @@ StressCase randomCase(uint64_t seed) {
         } catch (const Error&) { continue; }  // makes no sense: the next throw of the dice
         const int64_t count = countParticles(s).fluid;
         if (count < 20 || count > 8000) continue;
-        // Who slides a lid gives energy; who falls along a periodic axis falls for ever.
+        // A sliding lid gives energy; what falls along a periodic axis falls for ever.
         const bool falls = (s.domain.periodicX && s.simulation.gravity.x != 0) ||
                            (s.domain.periodicZ && s.simulation.gravity.z != 0);
         return {s.name, s, 300, {}, {}, !falls && keepsEnergy && s.walls.movingFace == Face::None};

@@ -16,12 +16,12 @@ struct StressCase {
     int steps = 300;
     std::function<RunState(const Scene&)> start;  // empty: as the scene says
     std::function<void(Simulation&, Scene&, int step)>
-        disturb;  // called before each tenth step, live knobs are taken over; empty: nobody does
-    bool energyIsConserved = true;  // nobody stirs, tilts or slides
+        disturb;  // called before each tenth step, live knobs are taken over; empty: none is called
+    bool energyIsConserved = true;  // nothing stirs, tilts or slides
 };
 
 // Sound: finite, inside the box, no energy from nothing, density within bounds. Stopped: not sound
-// any more, and the health guard said so before anything else. Broken: wrong, and nobody said so.
+// any more, and the health guard said so before anything else. Broken: wrong, and not a word.
 enum class Verdict { Sound, Stopped, Broken };
 struct StressResult {
     Verdict verdict = Verdict::Sound;

@@ -1,6 +1,6 @@
 #pragma once
-// What is true of each formulation, in one table: who wants to know whether a scene's formulation
-// does something asks here, and a new formulation is a line.
+// What is true of each formulation, in one table: code that depends on what a scene's formulation
+// does asks here, and a new formulation is a line.
 #include "scene/scene.h"
 
 namespace spindrift {

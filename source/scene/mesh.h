@@ -53,7 +53,7 @@ public:
     };
     Thinnest thinnest(double most) const;
 
-    // For those who ask often, and elsewhere than here. How fine it must be where particles are
+    // For code that asks often, and elsewhere than here. How fine it must be where particles are
     // `apart`: half of that, or less where the surface is thin. Throws Error (Scene) when it would
     // be too large.
     double fieldSpacing(double apart) const;

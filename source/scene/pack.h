@@ -82,7 +82,7 @@ bool areWhole(const std::vector<Candidate>&);
 void choose(const std::vector<Candidate>&, const Slants&, std::vector<Place>& out);
 
 // Moves the places from `first` on, which are near slants, until they and the others are evenly
-// spread; who has no room there is left out.
+// spread; a particle without room there is left out.
 void packBeside(const Scene&, const std::vector<Lattice>&, const Slants&, size_t first,
                 std::vector<Place>&);
 

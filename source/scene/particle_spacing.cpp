@@ -125,7 +125,7 @@ double spacingBetween(const std::vector<Vec3d>& places, int dimensions) {
     if (places.size() < Fewest) return 0;
     const Cells cells(places);
     double spacing = nearestDistance(places, cells);
-    // The sum of Wendland's kernel whose radius is two spacings is this large on a lattice; who is
+    // The sum of Wendland's kernel whose radius is two spacings is this large on a lattice; what is
     // not at the rim has all that it sees around it.
     const double onLattice = dimensions == 2 ? 1.0376 : 1.0338,
                  norm = dimensions == 2 ? 7 / std::numbers::pi : 10.5 / std::numbers::pi;

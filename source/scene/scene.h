@@ -177,7 +177,7 @@ struct SimulationKnobs {
 struct Domain {
     Vec3 min{0, 0, 0}, max{1.6f, 0.9f, 0.6f};  // m
     bool periodicX = false, periodicY = false,
-         periodicZ = false;  // who leaves on one side enters on the other
+         periodicZ = false;  // what leaves on one side enters on the other
     Vec3d size() const { return toDouble(max) - toDouble(min); }
     bool periodic(int axis) const {
         return axis == 0 ? periodicX : axis == 1 ? periodicY : periodicZ;
@@ -207,7 +207,7 @@ struct Fluid {
     float backgroundPressure = 0;   // Pa, of fluid at rest density
     float surfaceTension = 0;       // N/m
     float velocityTransfer = 0;     // 1/s, at which neighbours take over each other's velocity
-    float buoyancy = 0;             // of who is lighter than its surroundings, in units of gravity
+    float buoyancy = 0;             // of what is lighter than its surroundings, in units of gravity
     float dissipation = 0;          // 1/s, at which motion fades
     float airDensity = 0;           // kg/m³, of the air that slows drops; 0 = none
     float dragCoefficient = 0.47f;  // of the spheres as which it slows them

@@ -94,13 +94,13 @@ public:
     virtual void apply(const Scene&) = 0;
     virtual void stir(const Stir&) = 0;
     // Until the next call the solid is pulled to where the mouse wants it, whatever moves it
-    // otherwise; none: let go. In local steps nobody can.
+    // otherwise; none: let go. In local steps that is refused.
     virtual void hold(const Hold&) = 0;
     // Where each of the scene's solids is now.
     virtual std::vector<SolidPose> solidPoses() = 0;
     // The solid whose surface is within a spacing of a point (m, world coordinates), or -1.
     virtual int solidAt(Vec3d point) = 0;
-    // From now on somebody else's engine moves the elastic objects (object_driver.h); null: they
+    // From now on another engine moves the elastic objects (object_driver.h); null: they
     // move by themselves again. Not owned.
     virtual void drive(ObjectDriver*) = 0;
     // Steps from now on end at this time (s) exactly instead of reaching beyond it, if they aren't

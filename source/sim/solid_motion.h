@@ -1,6 +1,6 @@
 #pragma once
-// Where a solid that nobody moves as prescribed is, and how it moves: one that floats, or one that
-// the mouse has dragged.
+// Where a solid is that moves otherwise than prescribed, and how it moves: one that floats, or
+// that the mouse has dragged.
 #include "core/vec.h"
 
 namespace spindrift {

@@ -12,12 +12,12 @@ struct StepState {
     double volume = 1;    // of all particles then, share of their volume at rest density
     double stop = 1e300;  // s: a step ends here
     double longest = 0;   // s, what the last step could have been without a stop
-    // With local steps `dt` is the time to the next moment at which a particle is due, `longest`
-    // the step of calm fluid and of the whole.
+    // With local steps `dt` is the time to the next substep in which any particle is active, and
+    // `longest` the step of calm fluid and of the whole.
     int substep = 0;         // where in it the run stands, in 64ths; outside of step() 0
-    int timeBin = 0;         // particles are due whose steps are longest / 2^level and shorter
+    int timeBin = 0;         // particles are active whose steps are longest / 2^bin or shorter
     bool allActive = false;  // at this moment, for certain
-    bool allRest = false;    // until who rests is decided again
+    bool allRest = false;    // until what rests is decided again
     double awake = 1;        // share of the particles that don't rest
     double evaluations = 0;  // of a particle's forces, since the beginning of the run
 };

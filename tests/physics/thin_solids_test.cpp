@@ -82,32 +82,34 @@ Means watch(const Scene& scene, double thickness) {
     return m;
 }
 
-void expectLevels(const Means& m) {
-    EXPECT_NEAR(m.force / m.exact, 1, 0.03) << m.force << " N/m, exact " << m.exact;
-    EXPECT_NEAR(m.left / (Rho * G * 0.4), 0, 0.03);
-    EXPECT_NEAR(m.right / (Rho * G * 0.4), 0, 0.03);
+// Plates of a quarter of a spacing miss the three per cent in some cases (note 042).
+double limitOf(double spacings) { return spacings < 0.5 ? 0.05 : 0.03; }
+
+void expectLevels(const Means& m, double limit) {
+    EXPECT_NEAR(m.force / m.exact, 1, limit) << m.force << " N/m, exact " << m.exact;
+    EXPECT_NEAR(m.left / (Rho * G * 0.4), 0, limit);
+    EXPECT_NEAR(m.right / (Rho * G * 0.4), 0, limit);
 }
 
 TEST(ThinSolids, BearTheLevelsOnTheirSides) {
     for (const char* formulation : Formulations)
         for (const double spacings : {0.25, 0.6, 1.0, 1.5, 2.0, 3.0}) {
             SCOPED_TRACE(testing::Message() << formulation << " " << spacings);
-            if (spacings < 0.5 && formulation == std::string("delta_plus")) continue;  // 3.1 %
             const double thickness = spacings * Dx;
-            expectLevels(watch(twoLevels(thickness, formulation), thickness));
+            expectLevels(watch(twoLevels(thickness, formulation), thickness), limitOf(spacings));
         }
 }
 
 TEST(ThinSolids, BearThemInThreeDimensions) {
     for (const char* formulation : Formulations)
-        for (const double spacings : {1.0, 2.0}) {
+        for (const double spacings : {0.25, 1.0, 2.0}) {
             SCOPED_TRACE(testing::Message() << formulation << " " << spacings);
             const double thickness = spacings * Dx;
             Scene scene = twoLevels(thickness, formulation);
             scene.simulation.dimensions = 3;
             Means m = watch(scene, thickness);
             m.force /= double(scene.domain.max.z);
-            expectLevels(m);
+            expectLevels(m, limitOf(spacings));
         }
 }
 
@@ -115,11 +117,11 @@ TEST(ThinSolids, BearThemWhileTheyMove) {
     for (const char* formulation : Formulations)
         for (const double spacings : {0.25, 1.0, 2.0}) {
             SCOPED_TRACE(testing::Message() << formulation << " " << spacings);
-            if (spacings < 0.5 && formulation == std::string("delta_plus")) continue;  // 3.1 %
             const double thickness = spacings * Dx;
             expectLevels(
                 watch(twoLevels(thickness, formulation, R"(,"keyframes":[[0,0,0,0],[1,0.01,0,0]])"),
-                      thickness));
+                      thickness),
+                limitOf(spacings));
         }
 }
 
@@ -151,13 +153,39 @@ TEST(ThinSolids, PoolsAroundThemStayCalm) {
             }
 }
 
+// One that spans a periodic axis has no ends there.
+TEST(ThinSolids, SpanPeriodicAxes) {
+    for (const char* formulation : Formulations)
+        for (const double spacings : {0.25, 1.0, 2.0}) {
+            SCOPED_TRACE(testing::Message() << formulation << " " << spacings);
+            const double low = 0.1, high = low + spacings * Dx;
+            const Scene scene = sceneOf(
+                {"domain.max=0.3,0.4,0.2", "domain.periodic_x=true",
+                 fmt::format(R"(solids=[{{"shape":"block","min":[0,{},0],"max":[0.3,{},0.2]}}])",
+                             low, high),
+                 fmt::format(
+                     R"(fluid.bodies=[{{"shape":"block","min":[0,0,0],"max":[0.3,{},0.2],
+                     "pressure":"hydrostatic"}},{{"shape":"block","min":[0,{},0],"max":[0.3,{},0.2],
+                     "pressure":"hydrostatic"}}])",
+                     low, high, high + 0.2)},
+                formulation);
+            auto simulation = makeSimulation(scene);
+            while (simulation->clock().time < 0.4) simulation->step(20);
+            for (const Particle& p : simulation->particles())
+                EXPECT_FALSE(p.position.y > low + 1e-4 && p.position.y < high - 1e-4);
+            EXPECT_LT(simulation->measure().kineticEnergy, 0.1);  // J/m
+            // It carries 0.2 m of water; what is under it touches it without pressing.
+            EXPECT_NEAR(simulation->measure().solids[0].pressureForce.y / (Rho * G * 0.2 * 0.3), -1,
+                        limitOf(spacings));
+        }
+}
+
 // A cup of three plates hangs in a tank, fuller than the tank: what is in it presses its walls
 // outward, what is around it inward.
 TEST(ThinSolids, CupsHoldWater) {
     for (const char* formulation : Formulations)
         for (const double spacings : {0.25, 1.0, 2.0}) {
             SCOPED_TRACE(testing::Message() << formulation << " " << spacings);
-            if (spacings < 0.5 && formulation == std::string("wcsph")) continue;  // 4 %
             const double t = spacings * Dx, low = 0.2, high = 0.4, floor = 0.12;
             const Scene scene = sceneOf(
                 {"domain.max=0.6,0.5,0.2", "simulation.gravity_ramp=0.4",
@@ -194,9 +222,9 @@ TEST(ThinSolids, CupsHoldWater) {
                                   (0.6 - (high - low) - 2 * t);  // above the cup's underside
             const double side = Rho * G * (deep * deep - around * around) / 2,
                          down = Rho * G * (deep * (high - low) - around * (high - low + 2 * t));
-            EXPECT_NEAR(sum[0].x / side, -1, 0.03);
-            EXPECT_NEAR(sum[1].x / side, 1, 0.03);
-            EXPECT_NEAR((sum[0].y + sum[1].y + sum[2].y) / down, -1, 0.03);
+            EXPECT_NEAR(sum[0].x / side, -1, limitOf(spacings));
+            EXPECT_NEAR(sum[1].x / side, 1, limitOf(spacings));
+            EXPECT_NEAR((sum[0].y + sum[1].y + sum[2].y) / down, -1, limitOf(spacings));
         }
 }
 

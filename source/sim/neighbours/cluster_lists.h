@@ -165,7 +165,7 @@ public:
         for (size_t p = 0; p < ends_.size(); ++p)
             ends_[p] = uint32_t(std::min(clusters, (p + 1) * piece_));
     }
-    // Makes the lists that are wanted and not there: of all clusters, or with `due` of those of
+    // Makes the lists that are wanted and not there: of all clusters, or with `active` of those of
     // which it says more than Inactive. Boxes and cells are those of when the last ones were
     // forgotten.
     void build(Omp& device, const Grid& grid, float reach, const ClusterBoxes& own,
@@ -362,7 +362,7 @@ private:
     }
 
     // Distance from the interval [lo, hi] to a row; rows at the rim are taken as endless, they hold
-    // who is outside.
+    // what is outside.
     static float rowGap(float rowLow, float rowSize, float lo, float hi) {
         const float slack =
             1e-3f * rowSize;  // a particle on the face may have been rounded into the next row

@@ -56,7 +56,7 @@ public:
                 return isActive<Pass::activeFrom>(pass.v.fluid, c * clusterSize);
             };
             for (int first = begin, last; first < end;
-                 first = last) {  // stretches of clusters that are due, or aren't
+                 first = last) {  // stretches of clusters that are active, or not
                 last = first + 1;
                 while (last < end && isActiveOne(last) == isActiveOne(first)) ++last;
                 if (isActiveOne(first)) addUp<numbers>(b, block, first, last, pass.field().data);
@@ -69,7 +69,7 @@ public:
 private:
     static constexpr int mostBlocks = 32;
 
-    // Clusters that are due or may have a neighbour that is.
+    // Clusters that are active or may have a neighbour that is.
     static bool isNear(const Particles& p, int cluster) {
         return !p.active || p.active[cluster] > Inactive;
     }

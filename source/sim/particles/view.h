@@ -10,7 +10,7 @@
 
 namespace spindrift::LANES {
 
-// Particles of one kind, sorted by cell. A slot with id -1 holds nobody: it fills a row of cells up
+// Particles of one kind, sorted by cell. A slot with id -1 holds none: it fills a row of cells up
 // to whole clusters and lies far outside, so that no pair with it counts.
 struct Particles {
     int slots;
@@ -58,9 +58,9 @@ struct Particles {
     uint8_t* active;           // local steps only: per cluster, whether it is evaluated now
 };
 
-// The level of who rests.
+// The time bin of a particle that rests.
 inline constexpr real resting = -1;
-// Of clusters. Resting: all of it. Near: not due itself, but maybe a neighbour of who is.
+// What clusters are. Sleeping: all of it. Near: not active, but maybe a neighbour of one that is.
 // SleepingHalo: near and resting, so that its density goes with its neighbours' places as a wall's
 // would; with a pressure of its own it would push them without an end.
 enum : uint8_t { Sleeping, Inactive, NearActive, SleepingHalo, Active };
@@ -145,11 +145,11 @@ struct Neighbourhood {
 // Cubes of cells, for local steps. What is known of each:
 struct Blocks {
     Int3 count, size;  // along each axis, in cells; the last ones are larger
-    real* speed2;      // (m/s)^2, mean at the last decision of who rests
+    real* speed2;      // (m/s)^2, mean at the last decision of what rests
     int* calm;         // decisions for which nothing has happened around
     int* sleepLength;  // and after how many it wakes for a look
     uint8_t *active,
-        *near;  // whether it has a particle that is due; what its clusters are that have none
+        *near;  // whether it has an active particle; what its clusters are that have none
 };
 
 struct StepParameters {
@@ -193,7 +193,7 @@ struct StepParameters {
     Vector<real> slipBelow, slipAbove;      // m, Navier's lengths of the faces at 0 and at the end
     real rateAhead;   // steps, from the places of which the rate of density is to those it is for
     real solidSpeed;  // m/s, the most that any solid reaches
-    real gap;         // m: who was stopped by a solid is so far off, which is more than rounding
+    real gap;         // m: what a solid stopped is so far off, which is more than rounding
     Vector<real> low, high;              // m, the box that positions stay in
     Vector<real> period, inversePeriod;  // m, 1/m, of periodic axes; 0 for the others
     bool periodic;                       // any of them

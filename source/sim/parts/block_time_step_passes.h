@@ -1,6 +1,6 @@
 // Steps of their own for particles (time.mode local). A step of the whole is twice what cfl says;
 // in it each particle takes one, two, four, ... steps, as its speed and acceleration ask for, and
-// forces are evaluated only where a particle is due. A particle's velocity changes where its own
+// forces are evaluated only where a particle is active. A particle's velocity changes where its own
 // step begins, so that in between it is where its straight line leads: neighbours see nothing
 // extrapolated. Blocks of cells whose surroundings have been calm for long rest: they are neither
 // evaluated nor moved until something comes near.
@@ -12,7 +12,7 @@ namespace spindrift::LANES {
 
 // Parts of a step that particles' own steps are whole numbers of: 1/64 is the shortest.
 inline constexpr int deepestTimeBin = 6, parts = 1 << deepestTimeBin;
-// Who rests is decided every few steps, in which nothing crosses a spacing. So many decisions a
+// What rests is decided every few steps, in which nothing crosses a spacing. So many decisions a
 // block's surroundings must have been calm for before it rests, and so many after which it wakes if
 // any neighbour is awake: each time that nothing has come of it twice as many. (Always as many, and
 // a still pool of 18,000 was not at rest after 16 s; so it is after 6.5.)
@@ -97,7 +97,7 @@ struct MeasureBlocks {
     }
 };
 
-// Who rests: blocks whose surroundings have long been slower than restSpeed c. They wake when
+// What rests: blocks whose surroundings have long been slower than restSpeed c. They wake when
 // something faster comes near, and after a while if any of their neighbours is awake, for these may
 // have changed slowly. Fluid that rests doesn't move at all.
 struct RestBlocks {
@@ -107,7 +107,7 @@ struct RestBlocks {
         if (!decides(*v.state)) return;
         int &calm = v.blocks.calm[b], &sleepLength = v.blocks.sleepLength[b];
         const bool rested = calm >= calmDecisions;
-        if (!rested && v.blocks.speed2[b] < 0) return;  // nobody is here
+        if (!rested && v.blocks.speed2[b] < 0) return;  // it is empty
         real speed2 = -1;
         forBlocksAround(v, b, [&](int other) { speed2 = max(speed2, v.blocks.speed2[other]); });
         const real rest = v.c.restSpeed * v.c.soundSpeed, limit = rested ? wake * rest : rest;
@@ -129,7 +129,7 @@ struct RestBlocks {
     static constexpr real wake = 4;
 };
 
-// Clusters with a particle that is due.
+// Clusters with an active particle.
 struct FindActiveClusters {
     using Index = int;
     View v;
@@ -154,7 +154,7 @@ struct FindActiveBlocks {
         v.blocks.active[b] = active;
     }
 };
-// Blocks in touch with one that is due, SleepingHalo those where somebody rests.
+// Blocks in touch with an active one, SleepingHalo those in which any particle rests.
 struct FindNearBlocks {
     using Index = int;
     View v;
@@ -239,7 +239,7 @@ struct KickActive {
     static constexpr real little = real(1e-3);  // m/s, m/s²
 };
 
-// The largest speed, the deepest level, and how many particles were awake and due.
+// The largest speed, the deepest time bin, and how many particles were awake and active.
 struct Motion {
     float speed2 = 0;  // (m/s)^2
     int deepest = 0;
@@ -261,7 +261,7 @@ struct FindMotion {
     }
 };
 
-// How long it is until the next particle is due.
+// How long it is until the next particle is active.
 struct ChooseSubstep {
     using Index = int;
     View v;
@@ -284,7 +284,7 @@ struct ChooseSubstep {
     }
 };
 
-// All are due at the beginning of the next step.
+// All are active at the beginning of the next step.
 struct WakeParticles {
     using Index = int;
     Particles p;

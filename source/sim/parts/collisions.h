@@ -94,7 +94,7 @@ struct SolidInStep {
     HD bool enters(Vector<real> p, Vector<real> q, Hit& m) const {
         return s.field ? entersMesh(p, q, m) : entersConvex(p, q, m);
     }
-    // Who is inside already and goes on inward is stopped where it is nearest to the surface.
+    // What is inside already and goes on inward is stopped where it is nearest to the surface.
     HD bool goesInward(Vector<real> p, Vector<real> q, real distance, Hit& m) const {
         m.share = 0, m.at = addScaled(p, c.gap - distance, m.normal);
         return dot(q - p, m.normal) < 0;
@@ -147,7 +147,7 @@ struct SolidInStep {
         if (!(in <= out && length > 0)) return false;
         const Vector<real> from = addScaled(p, in, way), along = (1 / length) * way;
         const real shortest = real(0.25) / s.nodesPerMetre, end = (out - in) * length;
-        bool outside = in > 0;  // who is inside the box at once came through a face of both
+        bool outside = in > 0;  // what is inside the box at once came through a face of both
         real at = 0, before = 0, d = surface(s, from, m.normal);
         if (d > 2 * end) return false;
         if (!outside && d <= 0 && goesInward(p, q, d, m)) return true;
@@ -193,7 +193,7 @@ struct KeepOutOfSolids {
         for (int k = 0; k < clusterSize; ++k)
             if (rooms[k] < v.c.gap && v.fluid.id[firstOf(i) + k] >= 0) stop(firstOf(i) + k);
     }
-    // Who rests did not drift.
+    // What rests did not drift.
     template <class I> HD Vector<Real<I>> begin(I i, Vector<Real<I>> x) const {
         return isActive<Inactive>(v.fluid, firstOf(i)) ? load(v.fluid.keptPosition, i) : x;
     }
@@ -281,7 +281,7 @@ struct KeepOutOfSolids {
         u = addScaled(u, (-1 - v.c.restitution) * into, n);
         u = subtractScaled(u, real(v.c.friction), along);
     }
-    // Who is inside all the same, for it began there or was squeezed, is put on the surface.
+    // What is inside all the same, for it began there or was squeezed, is put on the surface.
     HD bool leave(const SolidState& s, Vector<real>& x, Vector<real>& u) const {
         const SolidInStep solid{s, v.c};
         Vector<real> arm = x - s.middle, n{0, 0, 0};

@@ -1,4 +1,4 @@
-// What happens to an elastic object's particles in a step: bonds, grips, blades, who presses them,
+// What happens to an elastic object's particles in a step: bonds, grips, blades, what presses them,
 // where they go.
 #pragma once
 
@@ -32,7 +32,7 @@ struct ObjectParticles {
     ScalarField mass, radius;                      // kg, m
     ScalarField torn;                              // 1: a bond of it is broken
     const int *object, *grip,
-        *firstBond;            // grip -1: nobody holds it; bonds [firstBond[i], firstBond[i + 1])
+        *firstBond;            // grip -1: none holds it; bonds [firstBond[i], firstBond[i + 1])
     const uint8_t* atSurface;  // before anything tore
     BondEnd* bonds;
     int* slot;  // where the surface has it, or -1
@@ -64,9 +64,9 @@ struct PlaceSurface {
         store(s.radius, i, o.atSurface[id] || torn > 0 ? load(o.radius, id) : outOfReach);
         store(s.torn, i, torn), store(s.object, i, real(o.object[id]));
     }
-    // m: whose reach is negative meets nobody.
+    // m: one whose reach is negative meets none.
     static constexpr real outOfReach = real(-1e3);
-    // Meets nobody, but lanes compute with it.
+    // It meets none, but lanes compute with it.
     HD void storeEmpty(int i) const {
         const Vector<real> zero{0, 0, 0};
         store(s.velocity, i, zero), store(s.home, i, zero);
@@ -94,8 +94,8 @@ struct SumPresses {
     }
 };
 
-// Forces of bonds, damped springs, of contacts and of floating solids; who is stretched too far
-// breaks, and who is cut. Both ends of a bond see the same.
+// Forces of bonds, damped springs, of contacts and of floating solids; what is stretched too far
+// breaks, and what is cut. Both ends of a bond see the same.
 struct StretchBonds {
     using Index = int;
     View v;
@@ -187,7 +187,7 @@ struct SumStops {
     }
 };
 
-// v += a dt, x += v dt; who is held goes where its grip is. The box and solids that don't float
+// v += a dt, x += v dt; what is held goes where its grip is. The box and solids that don't float
 // keep them inside and out.
 struct MoveObjects {
     using Index = int;
@@ -247,7 +247,7 @@ struct MoveObjects {
     }
 };
 
-// Particles whose engine is somebody else's: on their way to where that wants them at `arrival`, s,
+// Particles that another engine moves: on their way to where that wants them at `arrival`, s,
 // and what they feel until then, N s.
 struct FollowDriver {
     using Index = int;

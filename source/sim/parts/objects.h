@@ -1,4 +1,4 @@
-// Elastic objects: who they are, where they are kept, who touches whom.
+// Elastic objects on one device: what they are, and which particles touch.
 #pragma once
 
 #include "scene/sample_object.h"
@@ -13,7 +13,7 @@
 
 namespace spindrift::LANES {
 
-// Owns the objects and finds who touches whom.
+// Owns the objects and finds which particles touch.
 template <class Device> class Objects : public Part {
 public:
     Objects(Flow<Device>& flow, Solids<Device>& solids, Floating<Device>& floating)

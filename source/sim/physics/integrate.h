@@ -5,8 +5,8 @@
 
 namespace spindrift::LANES {
 
-// What integrators are made of: v += a dt (Kick), x += v dt (Drift); who leaves the box is put back
-// on its face and bounces, or enters on the other side. In parts where rates of velocity's
+// What integrators are made of: v += a dt (Kick), x += v dt (Drift); what leaves the box is put
+// back on its face and bounces, or enters on the other side. In parts where rates of velocity's
 // neighbours come between: of density, and of shifting.
 enum Advance : unsigned {
     Kick = 1,

@@ -12,7 +12,7 @@ namespace spindrift::LANES {
 // Empty slots lie beyond this coordinate, m.
 inline constexpr real farAway = 1e6;
 
-// Sort key: the particle's cell, or -1 for an empty slot. Who is nowhere (not finite) has no
+// Sort key: the particle's cell, or -1 for an empty slot. One that is nowhere (not finite) has no
 // neighbours in any cell; such particles are spread, because all of them in one cell would take
 // forever.
 struct FindCell {
@@ -420,7 +420,7 @@ template <class Kernel> struct ComputeDensityRate {
         const R rho = load(v.fluid.density, i);
         R diffusion = v.c.diffusion;
         Vector<R> slope = hydrostaticSlope(v.c, gravity, x);
-        if (v.fluid.massRatio.data) {  // who is heavier has a lower speed of sound
+        if (v.fluid.massRatio.data) {  // heavier fluid has a lower speed of sound
             const R ratio = load(v.fluid.massRatio, i);
             slope = ratio * slope, diffusion = diffusion / squareRoot(ratio);
         }

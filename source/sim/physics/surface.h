@@ -89,7 +89,7 @@ struct LeaveOutSpray {
 };
 
 // a_i += 2 sigma / rho0 kappa n. Twice, because half of the colour's gradient lies in the air,
-// where nobody is to be pulled. The curvature is that of Adami 2010, but by distances along the
+// where nothing is to be pulled. The curvature is that of Adami 2010, but by distances along the
 // surface, so that it doesn't matter how deep neighbours still have a normal:
 //     kappa = -div n^ = (1 - d) sum_j (n^_i - n^_j).grad W / sum_j (r - n^ n^.r).grad W (with
 //     Adami's r.grad W and -d drops swing 1.3 times as fast)

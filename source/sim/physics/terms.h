@@ -311,8 +311,8 @@ struct VelocityTransfer {
                                                        const Wall<R>&, A&) {}
 };
 
-// b g (rho_i - mean) / rho0, the mean inside the support: b g sum_j V W (rho_i - rho_j) / rho0. Who
-// is lighter than those around it rises faster.
+// b g (rho_i - mean) / rho0, the mean inside the support: b g sum_j V W (rho_i - rho_j) / rho0.
+// Fluid that is lighter than that around it rises faster.
 struct Buoyancy {
     static constexpr unsigned needs = Density;
     static constexpr const char* name = "buoyancy";

@@ -22,7 +22,7 @@ template <class Parts, class F> void forEachPart(const Parts& parts, const F& f)
 }
 
 // `Parts`: a tuple of references, in the order in which they act.
-template <class Device, class Kernel, class Parts> class StepMaker {
+template <class Device, class K, class Parts> class StepMaker {
 public:
     StepMaker(Flow<Device>& flow, BlockTimeSteps<Device>& blocks, const Parts& parts)
         : flow_(flow), scene_(flow.scene), blocks_(blocks), parts_(parts) {}
@@ -97,8 +97,7 @@ private:
         add("foresee density", onFluid<Integrate<DriftDensity>>);
         add("equation of state", onFluid<ApplyEquationOfState>);
         add("walls", wallPass(), Initial::No, whyNoWallPressure());
-        add("pressure",
-            onFluid<ComputeForces<Kernel, inner, TermList<PressureForce>, Forces::Alone>>);
+        add("pressure", onFluid<ComputeForces<K, inner, TermList<PressureForce>, Forces::Alone>>);
         plan_.add(
             "extremes", [&flow = flow_] { boundSplitMove(flow); }, Initial::No,
             keepsLists ? "" : noLists);
@@ -149,11 +148,11 @@ private:
             },
             initial, keepsLists ? "" : noLists);
         carriesDensity(scene_) ? add("equation of state", onFluid<ApplyEquationOfState>, initial)
-                               : add("density", onPairsOrFluid<ComputeDensity<Kernel>>, initial);
+                               : add("density", onPairsOrFluid<ComputeDensity<K>>, initial);
         add("walls", wallPass(), initial, whyNoWallPressure());
         add("surroundings",
-            carriesDensity(scene_) ? onFluid<WeighViscosity<Kernel, Lists::All>>
-                                   : onPairsOrFluid<WeighViscosity<Kernel, inner>>,
+            carriesDensity(scene_) ? onFluid<WeighViscosity<K, Lists::All>>
+                                   : onPairsOrFluid<WeighViscosity<K, inner>>,
             initial, whyViscosityIsNotWeighed(flow_));
         add("forces", forcePass(), initial);
         forEachPart(parts_, [&](auto& part) { part.addForces(plan_, initial); });
@@ -219,16 +218,19 @@ private:
     }
     template <bool dense> Pass wallPass() const {
         return flow_.fluidSticks()
-                   ? &Flow<Device>::template onWalls<ExtrapolateToWalls<Kernel, true, dense>>
-                   : &Flow<Device>::template onWalls<ExtrapolateToWalls<Kernel, false, dense>>;
+                   ? &Flow<Device>::template onWalls<ExtrapolateToWalls<K, true, dense>>
+                   : &Flow<Device>::template onWalls<ExtrapolateToWalls<K, false, dense>>;
     }
     Pass forcePass() const {
         if (factsOf(scene_).fillsSpace)
-            return chooseTerms(scene_, forces<buildInner>, TermList<CorrectedPressureForce>{},
-                               TermList<LaminarViscosity<ViscosityForm::Morris>>{});
+            return chooseTerms(
+                scene_, [](auto terms) { return forces<buildInner>(terms); },
+                TermList<CorrectedPressureForce>{},
+                TermList<LaminarViscosity<ViscosityForm::Morris>>{});
         if (factsOf(scene_).isHistorical)
-            return chooseTerms(scene_, forces<inner>, TermList<PressureForce>{},
-                               TermList<ClassicViscosity>{});
+            return chooseTerms(
+                scene_, [](auto terms) { return forces<inner>(terms); }, TermList<PressureForce>{},
+                TermList<ClassicViscosity>{});
         return withViscosityForm(scene_, [this](auto form) { return forcesOf<form.value>(); });
     }
     template <ViscosityForm form> Pass forcesOf() const {
@@ -247,15 +249,15 @@ private:
         return carriesDensity(scene_) ? forces<buildInner>(terms) : pairForces(terms);
     }
     template <class Terms> static Pass pairForces(Terms) {
-        return onPairsOrFluid<ComputeForces<Kernel, inner, Terms>>;
+        return onPairsOrFluid<ComputeForces<K, inner, Terms>>;
     }
-    template <Lists lists> static constexpr auto forces = [](auto terms) -> Pass {
-        return onFluid<ComputeForces<Kernel, lists, decltype(terms)>>;
-    };
+    template <Lists lists, class Terms> static Pass forces(Terms) {
+        return onFluid<ComputeForces<K, lists, Terms>>;
+    }
     Pass ratePass() const {
-        if (factsOf(scene_).fillsSpace) return onFluid<ComputeTransport<Kernel, false>>;
-        return shiftsParticles(scene_) ? onFluid<ComputeTransport<Kernel, true>>
-                                       : onFluid<ComputeDensityRate<Kernel>>;
+        if (factsOf(scene_).fillsSpace) return onFluid<ComputeTransport<K, false>>;
+        return shiftsParticles(scene_) ? onFluid<ComputeTransport<K, true>>
+                                       : onFluid<ComputeDensityRate<K>>;
     }
     const char* whyNoWallPressure() const {
         if (flow_.wallCount == 0) return "there are no boundary particles";
