@@ -7,7 +7,12 @@
 
 #include <gtest/gtest.h>
 
+#include <immintrin.h>
+
+#include <array>
+#include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <map>
 
@@ -48,6 +53,23 @@ std::vector<std::string> waysToCompute() {
     return ways;
 }
 
+// SSE and AVX2 begin a reciprocal with an estimate that is not the same on processors of different
+// makers (RCPPS; that of AVX-512 is). So their hashes hold on processors that estimate alike.
+std::string estimatesOfThisProcessor() {
+    uint32_t hash = 2166136261u;
+    for (int k = 0; k < 4096; ++k) {
+        std::array<float, 4> estimate;
+        _mm_storeu_ps(estimate.data(), _mm_rcp_ps(_mm_set1_ps(1 + float(k) / 4096)));
+        uint32_t bits;
+        std::memcpy(&bits, estimate.data(), sizeof bits);
+        hash = (hash ^ bits) * 16777619u;
+    }
+    return fmt::format("rcp {:08x}", hash);
+}
+bool dependsOnEstimates(const std::string& way) {
+    return way == "compute.simd=sse" || way == "compute.simd=avx2";
+}
+
 // The compiler that wrote the file, and its lines: a hash, a blank and the run's name.
 struct Golden {
     std::string compiler;
@@ -68,18 +90,25 @@ TEST(Golden, TwelveScenesKeepTheirBits) {
     if (!writes && golden.compiler != __VERSION__)
         GTEST_SKIP() << "golden.txt was written with compiler " << golden.compiler;
     golden.compiler = __VERSION__;
+    int compared = 0;
     for (const std::string& way : waysToCompute())
         for (const GoldenRun& run : Runs) {
             Scene scene = loadConfig(run.scene, run.knobs);
             setKnob(scene, way);
             std::string name = way + " " + run.scene;
             for (const std::string& knob : run.knobs) name += " " + knob;
+            if (dependsOnEstimates(way)) {
+                name += " " + estimatesOfThisProcessor();
+                if (!writes && !golden.hashes.contains(name)) continue;
+            }
             const std::string hash = fmt::format("{:016x}", hashAfter(scene, 30));
             if (writes)
                 golden.hashes[name] = hash;
             else
                 EXPECT_EQ(golden.hashes[name], hash) << name;
+            ++compared;
         }
+    EXPECT_GE(compared, int(Runs.size()));
     if (!writes) return;
     std::ofstream file(GoldenFile);
     file << golden.compiler << "\n";
