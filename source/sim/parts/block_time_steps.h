@@ -33,7 +33,10 @@ public:
         return true;
     }
     bool atStepEnd() const { return flow_.readClock().substep == 0; }
-    double shareAwake() const { return areOn() ? flow_.readClock().awake : 1; }
+    // What lists want to know; without them a recorded step could not ask.
+    double shareAwake() const {
+        return NeighbourSearch<Device>::keepsLists && areOn() ? flow_.readClock().awake : 1;
+    }
 
     // --- as a part (part.h) ---
 
