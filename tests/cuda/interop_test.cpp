@@ -68,8 +68,8 @@ private:
 };
 
 TEST_F(Interop, PictureEqualsThatOfTheCopyPixelForPixel) {
-    Frame direct(320, 240, 1);
     for (ColorBy by : {ColorBy::Velocity, ColorBy::Pressure}) {
+        Frame direct(320, 240, 1);  // as new as the other: legends say what a frame has seen
         scene.view.colorBy = by;
         scene.view.showWalls = by == ColorBy::Pressure;
         simulation->step(15);
