@@ -4,7 +4,7 @@ BUILD ?= build
 ARGS ?=
 CMAKE_ARGS ?=
 
-.PHONY: run test build configure bench validate stress fuzz documents knobs program gpu-check gpu-bundle meson sanitize check-format format release install clean
+.PHONY: run test build configure bench validate stress fuzz documents knobs program gpu-check gpu-bundle meson sanitize check-format check-headers format release install clean
 
 # Only what it needs: the tests are built by `make build`.
 run: program
@@ -55,6 +55,10 @@ check-format: install
 
 format: install
 	@git ls-files '*.cpp' '*.h' '*.cu' | xargs clang-format -i
+
+# Whether each header of source/ can be included by itself, two minutes.
+check-headers: install
+	tests/check_headers.sh
 
 # For machines other than this one: kernels for each GPU architecture that nvcc knows, no tests.
 release: install
