@@ -65,6 +65,8 @@ inline bool goesTogether(const Method& m, int dimensions) {
     if (f == Formulation::DeltaSph && s.simulation.kernel == Kernel::Mueller &&
         s.walls.kind == WallKind::Reflect)
         return false;
+    if (f == Formulation::Incompressible)
+        return i == Integrator::SymplecticEuler && s.time.mode != TimeMode::Local;
     if (f != Formulation::Classic) return true;
     return dimensions == 3 && s.simulation.kernel == Kernel::CubicSpline &&
            i == Integrator::SymplecticEuler;

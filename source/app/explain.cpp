@@ -11,20 +11,21 @@
 namespace spindrift {
 namespace {
 
-// Time of each pass, ms a run. A GPU measures the first step after a reset only, so each step is
-// one.
-std::map<std::string, double> timePasses(Simulation& simulation, int steps) {
-    std::map<std::string, PassTime> sums;
+// Of a pass in a step: how long, ms, and how often. A GPU measures the first step after a reset
+// only, so each step is one.
+struct Share {
+    double ms = 0, runs = 0;
+};
+std::map<std::string, Share> timePasses(Simulation& simulation, int steps) {
+    std::map<std::string, Share> each;
     for (int k = 0; k < steps; ++k) {
         simulation.resetTimes();
         simulation.step();
         for (const PassTime& t : simulation.times()) {
-            sums[t.name].ms += t.ms;
-            sums[t.name].runs += t.runs;
+            each[t.name].ms += t.ms / steps;
+            each[t.name].runs += double(t.runs) / steps;
         }
     }
-    std::map<std::string, double> each;
-    for (const auto& [name, t] : sums) each[name] = t.ms / double(t.runs);
     return each;
 }
 
@@ -62,9 +63,14 @@ int explain(const Scene& scene) {
     for (const PlanRow& row : simulation->plan()) {
         if (!row.skipped.empty()) continue;
         const auto time = times.find(row.name);
-        fmt::print("  {:46}{:>5}\n", row.name,
-                   time == times.end() ? "" : fmt::format("{:.3f}", time->second));
-        sum += time == times.end() ? 0 : time->second;
+        if (time == times.end()) {
+            fmt::print("  {}\n", row.name);
+            continue;
+        }
+        const auto [ms, runs] = time->second;
+        fmt::print("  {:46}{:.3f}{}\n", row.name, ms,
+                   runs > 1.01 ? fmt::format("  {:.1f} times", runs) : "");
+        sum += ms;
     }
     if (!times.empty()) fmt::print("  {:46}{:.3f}\n", "together", sum);
     fmt::print("\nskipped\n");

@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/hdf5_file.h"
 #include "core/output_file.h"
+#include "scene/formulation.h"
 #include "scene/json.h"
 #include "scene/sample_object.h"
 
@@ -18,8 +19,8 @@ using hdf5::Handle, hdf5::Trouble, hdf5::require;
 
 constexpr const char* Format = "spindrift checkpoint";
 constexpr int64_t Version =
-    5;  // 2: densities, where they are carried; 3: bodies, of mixtures; 4: motions of solids,
-        // objects; 5: per metre of depth in two dimensions
+    6;  // 2: densities, where they are carried; 3: bodies, of mixtures; 4: motions of solids,
+        // objects; 5: per metre of depth in two dimensions; 6: solved pressures
 
 // --- numbers and texts as attributes of the file ---
 
@@ -134,6 +135,10 @@ void writeAll(hid_t file, const Scene& scene, const RunState& s,
     if (!curves.empty()) writeFloats(file, "curves", "", curves.data(), curves.size(), 4);
     if (!s.densities.empty())
         writeFloats(file, "densities", "kg/m³", s.densities.data(), s.densities.size(), 1);
+    if (!s.pressures.empty()) {
+        writeFloats(file, "pressures", "Pa m⁶/kg²", s.pressures.data(), s.pressures.size(), 1);
+        writeNumbers(file, "step share", {s.clock.share});
+    }
 }
 
 // Until version 4 what has a depth in two dimensions was of a slab one spacing thick.
@@ -203,6 +208,10 @@ Checkpoint readAll(hid_t file, const std::string& path) {
         c.state.particles.bodies = readArray<uint16_t>(file, "bodies", H5T_NATIVE_UINT16, 1);
     if (carriesDensity(c.scene))
         c.state.densities = readArray<float>(file, "densities", H5T_NATIVE_FLOAT, 1);
+    if (factsOf(c.scene).solvesPressure) {
+        c.state.pressures = readArray<float>(file, "pressures", H5T_NATIVE_FLOAT, 1);
+        c.state.clock.share = readNumbers(file, "step share", 1)[0];
+    }
     static_assert(sizeof(CurvePoint) == 4 * sizeof(float));
     if (H5Lexists(file, "curves", H5P_DEFAULT) > 0)
         c.curves = readArray<CurvePoint>(file, "curves", H5T_NATIVE_FLOAT, 4);
@@ -211,6 +220,12 @@ Checkpoint readAll(hid_t file, const std::string& path) {
         throw Trouble{"velocities"};
     if (carriesDensity(c.scene) && c.state.densities.size() != c.state.particles.positions.size())
         throw Trouble{"densities"};
+    if (factsOf(c.scene).solvesPressure &&
+        c.state.pressures.size() != c.state.particles.positions.size())
+        throw Trouble{"pressures"};
+    for (float p : c.state.pressures)
+        if (!(std::isfinite(p) && p >= 0)) throw Trouble{"pressures"};
+    if (!(c.state.clock.share > 0 && c.state.clock.share <= 1)) throw Trouble{"step share"};
     if (isMultiFluid(c.scene) &&
         c.state.particles.bodies.size() != c.state.particles.positions.size())
         throw Trouble{"bodies"};

@@ -54,6 +54,12 @@ constexpr Quantity Quantities[] = {
      }},  // of a particle's forces, since the beginning
 };
 
+// Of the formulation that solves for pressures.
+constexpr Quantity SolveQuantities[] = {
+    {"iterations", "", [](const Measurement& m) { return double(m.solve.iterations); }},
+    {"solve_error", "1", [](const Measurement& m) { return m.solve.error; }},
+};
+
 struct SolidQuantity {
     const char *name, *unit;
     Vec3d SolidMeasurement::*of;
@@ -73,6 +79,8 @@ template <class F> void forValues(const Measurement& m, const F& f) {
         return q.hasDepth ? perDepth(q.unit, m.dimensions) : q.unit;
     };
     for (const Quantity& q : Quantities) f(q.name, unitOf(q), q.of(m));
+    if (m.solvesPressure)
+        for (const Quantity& q : SolveQuantities) f(q.name, unitOf(q), q.of(m));
     for (const SolidMeasurement& s : m.solids)
         for (const SolidQuantity& q : SolidQuantities)
             for (int k = 0; k < 3; ++k)

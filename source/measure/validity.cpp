@@ -164,7 +164,12 @@ void Validity::look(const Measurement& m) {
                            "displaced, or raise fluid.speed_ratio (fluid.sound_speed)",
                            100 * m.densityError, m.time, 100 * MostCompression),
                m.time);
-    if (m.maxSpeed > MostMach * m.soundSpeed)
+    if (double(m.solve.failures) > 10 + 0.02 * double(m.steps))
+        remark(fmt::format("pressures: not found in {} of {} steps, which were shortened; raise "
+                           "solver.iterations or lower time.cfl",
+                           m.solve.failures, m.steps),
+               m.time);
+    if (m.maxSpeed > MostMach * m.soundSpeed && !m.solvesPressure)
         remark(fmt::format("Mach number: {:.2g} at {:.4g} s, above {:g}; set fluid.sound_speed to "
                            "{:.2g} m/s or more",
                            m.maxSpeed / m.soundSpeed, m.time, MostMach, 10 * m.maxSpeed),

@@ -323,7 +323,7 @@ void checkObjects(const Scene& scene) {
         return;
     }
     checkApart(scene);
-    if (!factsOf(scene).takesOthers)
+    if (!factsOf(scene).takesObjects)
         refuse("objects",
                "need fluid that may leave room for them: simulation.formulation wcsph, delta_sph "
                "or delta_plus");

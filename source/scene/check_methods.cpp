@@ -81,6 +81,12 @@ void checkMethods(const Scene& scene) {
     checkReflecting(scene);
     checkPressureForm(scene);
     checkViscosityForm(scene);
+    if (factsOf(scene).solvesPressure && integrator != Integrator::SymplecticEuler)
+        refuse("time.integrator",
+               "the incompressible formulation is stepped by symplectic_euler; use that");
+    if (factsOf(scene).solvesPressure && scene.time.mode == TimeMode::Local)
+        refuse("time.mode",
+               "the incompressible formulation has the same step everywhere; use cfl or fixed");
     const auto floats = [](const Solid& s) { return s.floats(); };
     const bool several =
         isMultiFluid(scene) || std::any_of(scene.solids.begin(), scene.solids.end(), floats);

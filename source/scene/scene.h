@@ -12,7 +12,7 @@ namespace spindrift {
 enum class Backend { Auto, Cpu, Cuda };
 enum class Precision { Float, Double };
 enum class Simd { Auto, Avx512, Avx2, Sse };
-enum class Formulation { Wcsph, DeltaSph, DeltaPlus, TransportVelocity, Classic };
+enum class Formulation { Wcsph, DeltaSph, DeltaPlus, TransportVelocity, Classic, Incompressible };
 enum class Kernel { WendlandC2, CubicSpline, WendlandC4, WendlandC6, QuinticSpline, Mueller };
 enum class PressureForm { Squares, Mean };
 enum class ViscosityForm { Auto, Morris, Monaghan };
@@ -235,6 +235,14 @@ struct TimeKnobs {
         3;  // with half the step from an earlier state, before a run in trouble is given up
 };
 
+// Of the incompressible formulation: when its pressures are good enough.
+struct Solver {
+    float densityError = 0.001f;  // mean of what densities are too large by, share of rest density
+    int iterations = 100;         // at most
+    float densityShare = 0.1f;    // of an error of density that a step takes out
+    float relaxation = 1;         // how far pressures go in an iteration, share of what is sure
+};
+
 struct Camera {
     float yaw = 35, pitch = 20;   // degrees
     float distance = 0;           // m, 0 = fits the domain
@@ -312,6 +320,7 @@ struct Scene {
     Contact contact;
     Fluid fluid;
     TimeKnobs time;
+    Solver solver;
     View view;
     Output output;
 };

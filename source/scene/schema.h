@@ -23,7 +23,8 @@ constexpr auto enumNames(Backend) { return std::array{"auto", "cpu", "cuda"}; }
 constexpr auto enumNames(Precision) { return std::array{"float", "double"}; }
 constexpr auto enumNames(Simd) { return std::array{"auto", "avx512", "avx2", "sse"}; }
 constexpr auto enumNames(Formulation) {
-    return std::array{"wcsph", "delta_sph", "delta_plus", "transport_velocity", "classic"};
+    return std::array{"wcsph",   "delta_sph",     "delta_plus", "transport_velocity",
+                      "classic", "incompressible"};
 }
 constexpr auto enumNames(Kernel) {
     return std::array{"wendland_c2", "cubic_spline",   "wendland_c4",
@@ -389,7 +390,8 @@ template <class S, class Visitor> void visitPhysics(S& s, Visitor&& visit) {
              "wcsph: density by summation, rugged; delta_sph: density carried and diffused, smooth "
              "pressure; delta_plus: the same with shifted particles, loses little energy; "
              "transport_velocity: second order, for flows that fill the domain; classic: "
-             "the historical one",
+             "the historical one; incompressible: pressure solved for, steps as long as the flow "
+             "lets them be, for looking and playing",
              Restart});
     visit("simulation.dimensions", sim.dimensions,
           Knob{"", 2, 3, "2 = a layer of particles, everything depends on x and y only", Restart});
@@ -482,6 +484,18 @@ template <class S, class Visitor> void visitPhysics(S& s, Visitor&& visit) {
           Knob{"", 0, 0.1f,
                "local: slower than this share of the speed of sound, fluid may fall asleep; 0 = "
                "never"});
+    visit("solver.density_error", s.solver.densityError,
+          Knob{"", 1e-6f, 0.1f,
+               "incompressible: pressures are good enough when densities are too large by less, in "
+               "the mean, as a share of the rest density"});
+    visit("solver.iterations", s.solver.iterations,
+          Knob{"", 2, 10000, "incompressible: at most, for the pressures of a step"});
+    visit("solver.density_share", s.solver.densityShare,
+          Knob{"", 0.01f, 1, "incompressible: share of an error of density that a step takes out"});
+    visit("solver.relaxation", s.solver.relaxation,
+          Knob{"", 0.05f, 1.5f,
+               "incompressible: how far pressures go in an iteration, share of what a lattice of "
+               "particles is sure to bear"});
     visit("time.retries", s.time.retries,
           Knob{"", 0, 8,
                "how often a run in trouble goes back to its last good state and on with half the "

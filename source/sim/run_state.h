@@ -14,6 +14,8 @@ struct RunState {
     FluidExtent start;
     std::vector<float>
         densities;  // kg/m³, where they are carried; empty at the beginning, when pressures say
+    std::vector<float> pressures;     // p / rho^2, Pa m^6/kg^2, where they are solved for; empty at
+                                      // the beginning
     std::vector<SolidMotion> solids;  // one for each, where any floats or has been dragged;
                                       // otherwise, and at the beginning, empty
     ObjectState objects;

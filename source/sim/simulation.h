@@ -44,23 +44,32 @@ struct SolidPose {
 
 // What a run says of itself. Energies in J, momentum in kg m/s, in two dimensions per metre of
 // depth; lengths in m; sums in double precision.
+// What the incompressible formulation's pressures took in the last step.
+struct SolveReport {
+    int iterations = 0;
+    double error = 0;      // mean growth of density, share of the rest density
+    int64_t failures = 0;  // steps of the run whose pressures were not found
+};
+
 struct Measurement {
     int dimensions = 3;
     double time = 0;         // s
     double dt = 0;           // s, the last step
     double longestStep = 0;  // s, what that could have been if the run had nowhere to stop
     int64_t steps = 0;
-    double evaluations = 0;                // of a particle's forces, all together
-    double kineticEnergy = 0;              // sum m v^2 / 2
-    double potentialEnergy = 0;            // -sum m g.x, zero at the domain's lower corner
-    Vec3d momentum;                        // sum m v
-    Vec3d angularMomentum;                 // sum m (x - c) x v, c the middle of the domain
-    Vec3d centerOfMass;                    // world coordinates
-    double meanDensity = 0;                // kg/m³
-    double densityError = 0;               // mean of max(rho/rho0 - 1, 0): compression only
-    double maxDensityError = 0;            // largest rho/rho0 - 1
-    double maxSpeed = 0;                   // m/s
-    double soundSpeed = 0;                 // m/s, of the equation of state
+    double evaluations = 0;       // of a particle's forces, all together
+    double kineticEnergy = 0;     // sum m v^2 / 2
+    double potentialEnergy = 0;   // -sum m g.x, zero at the domain's lower corner
+    Vec3d momentum;               // sum m v
+    Vec3d angularMomentum;        // sum m (x - c) x v, c the middle of the domain
+    Vec3d centerOfMass;           // world coordinates
+    double meanDensity = 0;       // kg/m³
+    double densityError = 0;      // mean of max(rho/rho0 - 1, 0): compression only
+    double maxDensityError = 0;   // largest rho/rho0 - 1
+    double maxSpeed = 0;          // m/s
+    double soundSpeed = 0;        // m/s, of the equation of state
+    bool solvesPressure = false;  // the formulation does, as `solve` reports
+    SolveReport solve;
     std::vector<SolidMeasurement> solids;  // one for each of the scene's
     bool finite = true;                    // no NaN or infinity in position, velocity, density
 };

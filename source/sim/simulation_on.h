@@ -42,6 +42,7 @@ public:
         CHECK(int(state.particles.positions.size()) == flow_.fluidCount);
         flow_.fluid.upload(state.particles.positions, state.particles.velocities,
                            flow_.densitiesOf(state), 0);
+        if (factsOf(flow_.scene).solvesPressure) flow_.fluid.setPressures(flow_.pressuresOf(state));
         flow_.fillMixture();
         StepState clock = state.clock;
         clock.speed = 0;  // a checkpoint doesn't know it
@@ -107,6 +108,8 @@ public:
     Measurement measure() override {
         Measurement m = measureFluid(flow_);
         countSteps(m, clock(), blocks_.areOn(), flow_.fluidCount);
+        m.solvesPressure = factsOf(flow_.scene).solvesPressure;
+        m.solve = solver_.report();
         m.solids = solids_.measure();
         return m;
     }
@@ -123,6 +126,7 @@ public:
         s.clock = clock();
         s.start = flow_.extent;
         s.densities = flow_.fluid.densities(flow_.fluidCount);
+        s.pressures = flow_.fluid.pressures(flow_.fluidCount);
         forEachPart(parts(), [&](auto& part) { part.save(s); });
         return s;
     }
@@ -164,7 +168,8 @@ private:
             forEachPart(parts(), [&](auto& part) { part.knowLongestStep(step); });
             flow_.addBuffers();
             flow_.fluid.weighViscosity(!*whyViscosityIsNotWeighed(flow_));
-            runner_.take(StepMaker<Device, K, decltype(parts())>(flow_, blocks_, parts()).plan());
+            runner_.take(
+                StepMaker<Device, K, decltype(parts())>(flow_, blocks_, solver_, parts()).plan());
         });
     }
     void letSolidsMove() {
@@ -196,6 +201,7 @@ private:
     Objects<Device> objects_{flow_, solids_, floating_};
     Resistance<Device> resistance_{flow_};
     BlockTimeSteps<Device> blocks_{flow_};
+    PressureSolver<Device> solver_{flow_};
     StepRunner<Device> runner_{flow_.device, {&flow_.fluid, &flow_.walls, &objects_.surfaceSet()}};
     Buffer<Vertex, Device> staging_{flow_.device};  // for vertices that the host is to have
 };

@@ -12,6 +12,8 @@ struct StepState {
     double volume = 1;    // of all particles then, share of their volume at rest density
     double stop = 1e300;  // s: a step ends here
     double longest = 0;   // s, what the last step could have been without a stop
+    double share = 1;     // of it, that steps take: less where pressures were not found
+    double momentum = 0;  // of the iterations for pressures
     // With local steps `dt` is the time to the next substep in which any particle is active, and
     // `longest` the step of calm fluid and of the whole.
     int substep = 0;         // where in it the run stands, in 64ths; outside of step() 0

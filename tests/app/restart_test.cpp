@@ -41,6 +41,16 @@ TEST_F(Restart, DensityThatIsCarriedGoesOnToo) {
     EXPECT_EQ(read("rest.h5").state.densities.size(), 2500u);
 }
 
+TEST_F(Restart, SolvedPressuresGoOnToo) {
+    const std::string run = Run + "--set simulation.formulation=incompressible ";
+    ASSERT_EQ(call(run + "--time 0.3 --checkpoint whole.h5").code, 0);
+    ASSERT_EQ(call(run + "--time 0.1 --checkpoint half.h5").code, 0);
+    ASSERT_EQ(call("half.h5 --headless --quiet --time 0.3 --checkpoint rest.h5").code, 0);
+    expectSame(read("whole.h5"), read("rest.h5"));
+    EXPECT_EQ(read("whole.h5").state.pressures, read("rest.h5").state.pressures);
+    EXPECT_GT(read("rest.h5").state.pressures.size(), 0u);
+}
+
 TEST_F(Restart, SolidsGoOnFromWhereTheyAre) {
     const std::string run =
         "test/solids_small --headless --backend cpu --quiet --set output.checkpoint_every=0.05 ";

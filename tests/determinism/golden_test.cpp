@@ -32,6 +32,7 @@ const std::vector<GoldenRun> Runs = {
     {"test/dam_break_small.json",
      {"simulation.formulation=delta_plus", "time.integrator=velocity_verlet"}},
     {"test/dam_break_small.json", {"simulation.formulation=delta_sph", "time.integrator=split"}},
+    {"test/dam_break_small.json", {"simulation.formulation=incompressible"}},
     {"test/ball_drop_small.json", {"time.mode=local"}},
     {"test/historical_small.json", {}},
     {"test/solids_small.json", {}},

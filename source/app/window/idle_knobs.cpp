@@ -21,6 +21,9 @@ const char* whyFluidIsIdle(const Scene& s, const std::string& path) {
     if (path == "fluid.speed_ratio" && f.soundSpeed > 0) return "fluid.sound_speed says it";
     if (path == "fluid.gamma" && f.equationOfState == EquationOfState::Linear)
         return "fluid.equation_of_state is linear";
+    if (factsOf(s).solvesPressure && (path == "fluid.gamma" || path == "fluid.equation_of_state" ||
+                                      path == "fluid.background_pressure"))
+        return "pressure is solved for, not by an equation of state";
     if (path == "fluid.density_diffusion" && !carriesDensity(s))
         return "density is summed up, not carried";
     if (path == "fluid.shifting" && !shiftsParticles(s))
@@ -28,7 +31,7 @@ const char* whyFluidIsIdle(const Scene& s, const std::string& path) {
     if (path == "fluid.surface_tension" && !factsOf(s).takesTension)
         return "simulation.formulation is not delta_plus";
     if (path == "fluid.air_density" && !factsOf(s).airResists)
-        return "simulation.formulation is not wcsph";
+        return "simulation.formulation is neither wcsph nor incompressible";
     if ((path == "fluid.drag_coefficient" || path == "fluid.wind") && f.airDensity <= 0)
         return "fluid.air_density is 0";
     const bool isRare = path == "fluid.velocity_transfer" || path == "fluid.buoyancy" ||
@@ -45,6 +48,8 @@ const char* whyRestIsIdle(const Scene& s, const std::string& path) {
     if (path == "simulation.pressure_form" && !factsOf(s).meansPressure)
         return "simulation.formulation is not wcsph";
     const bool soundIsKnown = s.fluid.soundSpeed > 0 || s.fluid.stiffness > 0;  // else it follows
+    if (path.starts_with("solver.") && !factsOf(s).solvesPressure)
+        return "simulation.formulation is not incompressible";
     if (path == "walls.velocity" && s.walls.movingFace == Face::None && soundIsKnown)
         return "walls.moving_face is none";
     const bool sticks = largestViscosity(s) > 0 || s.fluid.artificialViscosity > 0;

@@ -149,7 +149,10 @@ void status(Ui& ui) {
     row("time step", "{:.3g} ms", 1e3 * m.dt);
     row("particles", "{} + {} walls", ui.fluidCount, ui.wallCount);
     row("fastest particle", "{:.3g} m/s", m.maxSpeed);
-    row("speed of sound", "{:.3g} m/s", m.soundSpeed);
+    if (m.solvesPressure)
+        row("pressure", "{} iterations", m.solve.iterations);
+    else
+        row("speed of sound", "{:.3g} m/s", m.soundSpeed);
     row("device", "{}", ui.device.substr(0, ui.device.find(',')));
     row("drawing", "{:.1f} ms a picture", ui.drawMs);
     if (ui.player.remarks().empty()) return;

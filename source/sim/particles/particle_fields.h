@@ -24,6 +24,7 @@ struct Holdings {
     bool addsPairs, normals;  // sums for forces on top of the others; normals of the surface
     bool mixture;             // more than one fluid
     bool viscousVolume;
+    bool solvesPressure;  // of the fluid: pressures go from step to step, and what solving needs
 
     bool isFluid() const { return kind == Kind::Fluid; }
     bool isWalls() const { return kind == Kind::Walls; }
@@ -54,7 +55,7 @@ inline constexpr ParticleField particleFields[] = {
     SPINDRIFT_VECTOR(position, true, true),
     SPINDRIFT_VECTOR(velocity, h.velocity, h.isFluid()),
     SPINDRIFT_VECTOR(acceleration, h.isFluid(), h.isActiveInBins()),
-    SPINDRIFT_SCALAR(pressureOverRho2, h.kind != Kind::Objects, false, 0),
+    SPINDRIFT_SCALAR(pressureOverRho2, h.kind != Kind::Objects, h.solvesPressure, 0),
     SPINDRIFT_SCALAR(density, h.density, h.densityRate || h.isActiveInBins(), 0),
     SPINDRIFT_SCALAR(densityRate, h.densityRate, h.densityRate&& h.isActiveInBins(), 0),
     SPINDRIFT_SCALAR(inverseDensity, h.isFluid(), false, 0),
@@ -64,6 +65,13 @@ inline constexpr ParticleField particleFields[] = {
     SPINDRIFT_VECTOR(addedForce, h.isFluid() && h.addsPairs, false),
     SPINDRIFT_VECTOR(normal, h.isFluid() && h.normals, false),
     SPINDRIFT_SCALAR(normalLength, h.isFluid() && h.normals, false, 0),
+    SPINDRIFT_VECTOR(pressureAcceleration, h.solvesPressure, false),
+    SPINDRIFT_VECTOR(wallGradient, h.solvesPressure, false),
+    SPINDRIFT_SCALAR(diagonal, h.solvesPressure, false, 0),
+    SPINDRIFT_SCALAR(mirrored, h.solvesPressure, false, 0),
+    SPINDRIFT_SCALAR(lastPressure, h.solvesPressure, false, 0),
+    SPINDRIFT_SCALAR(source, h.solvesPressure, false, 0),
+    SPINDRIFT_SCALAR(residual, h.solvesPressure, false, 0),
     SPINDRIFT_VECTOR(keptPosition, h.isFluid() && (h.keepsState || h.keepsPlace),
                      h.keepsState || h.keepsPlace),
     SPINDRIFT_VECTOR(keptVelocity, h.isFluid() && h.keepsVelocity, h.keepsVelocity),

@@ -109,6 +109,7 @@ public:
     void haveDensity() { holds_.density = true, resize(slots_); }
     void carryDensity() { holds_.densityRate = true; }
     void shift() { holds_.shifts = true; }
+    void solvePressure() { holds_.solvesPressure = true; }
     void keepVelocity() { holds_.keepsVelocity = true; }
     void keepState() { holds_.keepsVelocity = holds_.keepsState = true; }
     void keepPlace() { holds_.keepsPlace = true; }
@@ -136,15 +137,21 @@ public:
     std::vector<Vec3> velocities(int count, int firstId) const {
         return inOrder(&Particles::velocity, count, firstId);
     }
-    // Empty where density is not carried.
+    // Empty where density is not carried, and where pressure is not solved for.
     std::vector<float> densities(int count) const {
-        if (!holds_.densityRate) return {};
-        const std::vector<real> values = copy(now(&Particles::density));
+        return holds_.densityRate ? inOrder(&Particles::density, count) : std::vector<float>{};
+    }
+    std::vector<float> pressures(int count) const {
+        return holds_.solvesPressure ? inOrder(&Particles::pressureOverRho2, count)
+                                     : std::vector<float>{};
+    }
+    // Where they are solved for, p / rho^2 by ids from 0 on.
+    void setPressures(const std::vector<float>& pressures) {
+        std::vector<real> values(size_t(slots_), 0);
         const std::vector<int> id = copy(id_);
-        std::vector<float> out(count);
         for (int i = 0; i < slots_; ++i)
-            if (id[i] >= 0) out[id[i]] = float(values[i]);
-        return out;
+            if (id[i] >= 0 && size_t(id[i]) < pressures.size()) values[i] = pressures[id[i]];
+        upload(&Particles::pressureOverRho2, values);
     }
 
     // In the order of ids, in world coordinates.
@@ -187,6 +194,14 @@ private:
     static constexpr size_t fieldCount = std::size(particleFields);
     using Fields = std::array<Numbers, fieldCount>;
 
+    std::vector<float> inOrder(ScalarField Particles::*field, int count) const {
+        const std::vector<real> values = copy(now(field));
+        const std::vector<int> id = copy(id_);
+        std::vector<float> out(count);
+        for (int i = 0; i < slots_; ++i)
+            if (id[i] >= 0) out[id[i]] = float(values[i]);
+        return out;
+    }
     Kind kind() const { return holds_.kind; }
     // f(field, its number) for each field that there is.
     template <class F> static void forFields(const F& f) {

@@ -45,6 +45,14 @@ struct Particles {
                                 // they move,
     VectorField
         shiftAcceleration;  // m/s², and what a particle's velocity changes by for being elsewhere
+    VectorField pressureAcceleration;  // m/s², where pressures are solved for; and what solving
+                                       // needs (solver/pressure_passes.h):
+    VectorField wallGradient;          // kg/m^4, sum_b m_b grad W
+    ScalarField diagonal;              // kg^2/m^8, of the operator
+    ScalarField mirrored;              // share of a particle's pressure that walls beside it have
+    ScalarField lastPressure;          // as pressureOverRho2, an iteration ago
+    ScalarField source, residual;      // share of rho0 that densities would grow by in the step,
+                                       // without pressures and with them
     VectorField keptPosition;  // m, what the integrator keeps while forces are evaluated elsewhere;
                                // with solids, after the drift, where its way began
     VectorField keptVelocity;  // m/s
@@ -170,24 +178,26 @@ struct StepParameters {
     real flatMoment;  // what makes moments in two dimensions invertible: 1, otherwise 0
     real laminar;     // 2 mu, Pa s, for the kernel's own sums of Laplacians; over s^2 in Monaghan's
                       // form
-    real perSurroundings;       // 1 / what WeighViscosity sums up around a lattice point
-    real artificial;            // alpha c h / 2, m^2/s
-    real classicViscosity;      // nu m / (rho0 pi R^5) in units of gradientScale
-    real surfaceTension;        // 2 sigma / rho0, m³/s^2
-    real normalScale;           // m gradientNorm / (rho0 R^5) of MeanKernel
-    real leastCompany;          // sum of MeanKernel::w, below which there is but spray
-    real leastNormal;           // 1/m: shorter ones belong to no surface
-    real velocityTransfer;      // rate kernelScale / 2 in units of gradientScale
-    real buoyancy;              // b kernelScale / rho0^2 in units of gradientScale
-    real dissipation, airDrag;  // 1/s, 1/m
-    Vector<real> wind;          // m/s
-    real aloneDensity;          // of a particle without neighbours / rho0
-    real eta2;                  // 0.01 h^2, keeps 1/d^2 finite
-    real accelerationLimit;     // m/s²
-    Vector<real> gravity;       // m/s²
-    real gravityRate;           // 1/s, how fast it grows from 0; 0: it is there at once
-    real centralPull;           // 1/s^2, Omega^2 of -Omega^2 (x - center)
-    Vector<real> center;        // m
+    real perSurroundings;           // 1 / what WeighViscosity sums up around a lattice point
+    real artificial;                // alpha c h / 2, m^2/s
+    real classicViscosity;          // nu m / (rho0 pi R^5) in units of gradientScale
+    real surfaceTension;            // 2 sigma / rho0, m³/s^2
+    real normalScale;               // m gradientNorm / (rho0 R^5) of MeanKernel
+    real leastCompany;              // sum of MeanKernel::w, below which there is but spray
+    real leastNormal;               // 1/m: shorter ones belong to no surface
+    real velocityTransfer;          // rate kernelScale / 2 in units of gradientScale
+    real buoyancy;                  // b kernelScale / rho0^2 in units of gradientScale
+    real dissipation, airDrag;      // 1/s, 1/m
+    Vector<real> wind;              // m/s
+    real aloneDensity;              // of a particle without neighbours / rho0
+    real densityShare, relaxation;  // of the pressure solve (scene.h)
+    real latticeSquares;            // kg^2/m^8, sum_j (m grad W)^2 of a lattice point
+    real eta2;                      // 0.01 h^2, keeps 1/d^2 finite
+    real accelerationLimit;         // m/s²
+    Vector<real> gravity;           // m/s²
+    real gravityRate;               // 1/s, how fast it grows from 0; 0: it is there at once
+    real centralPull;               // 1/s^2, Omega^2 of -Omega^2 (x - center)
+    Vector<real> center;            // m
     Vector<real> slidesBelow, slidesAbove;  // m: boundary particles below or above these slide with
     Vector<real> slideVelocity;             // m/s
     Vector<real> slipBelow, slipAbove;      // m, Navier's lengths of the faces at 0 and at the end
@@ -199,6 +209,7 @@ struct StepParameters {
     bool periodic;                       // any of them
     real restitution, friction;
     real soundSpeed, fastestSound;  // m/s, of the scene's rest density, and of the lightest fluid
+    real leastSpeed;                // m/s: no slower is anything to steps that the flow bounds
     real cfl, fixedStep;
     real maxStep;    // s, what is asked for and what forces but pressure allow
     real restSpeed;  // below that share of the speed of sound fluid may rest, 0: nothing rests

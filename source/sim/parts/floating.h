@@ -53,6 +53,8 @@ public:
 
     // --- as a part (part.h) ---
 
+    static constexpr bool feelsPressure = true;
+
     void restart(const RunState& state) {
         std::vector<SolidMotion> motions = state.solids;
         for (size_t s = motions.size(); s < onHost_.size(); ++s)

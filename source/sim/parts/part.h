@@ -33,6 +33,9 @@ struct Part {
     // Bytes that the host holds for it.
     int64_t bytes() const { return 0; }
 
+    // Whether its forces come from the fluid's pressure, so that they follow it where it is solved.
+    static constexpr bool feelsPressure = false;
+
     // Rows of the plan: before anything is looked for, half a step ahead or not; between order and
     // lists; on top of the forces; things that move; what rates of density ask for, by the
     // velocities that forces have led to; and what fluid runs into.

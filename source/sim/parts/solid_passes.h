@@ -242,11 +242,12 @@ template <class Kernel, class... Terms> struct ComputeWallLoads<Kernel, TermList
     WallsAtHome home;
     HD void operator()(ICluster b) const {
         if (!home.hasSolid(v.walls, firstOf(b) / clusterSize)) return;
-        const Wall<R> wall = loadWall<needs>(v.walls, b);
+        Wall<R> wall = loadWall<needs>(v.walls, b);
         Acceleration<R> a{};
         const Vector<R> x = load(v.walls.position, b);
         const Vector<R> pull = R(1 / v.c.restDensity) *
                                (bodyForce(v.c, gravityNow(v), x) - ownAcceleration(v.walls, b));
+        wall.pull = pull;
         Vector<R> seen{0, 0, 0}, atRest{0, 0, 0};
         forNeighbours<Lists::All>(v, v.fluidNearWalls, b, x, [&](auto p, JCluster j) LANE_CALL {
             p.r = R(-1) * p.r;

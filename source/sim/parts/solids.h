@@ -284,6 +284,9 @@ private:
         return withViscosityForm(flow_.scene, [&](auto form) {
             if (isMultiFluid(flow_.scene))
                 return chosen(TermList<PressureForce, MixtureViscosity<form.value>>{});
+            if (factsOf(flow_.scene).solvesPressure)
+                return chooseTerms(flow_.scene, chosen, TermList<MirroredPressureForce>{},
+                                   Viscosities<form.value>{});
             return chooseTerms(flow_.scene, chosen, TermList<PressureForce>{},
                                Viscosities<form.value>{});
         });

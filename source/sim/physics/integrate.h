@@ -19,7 +19,8 @@ enum Advance : unsigned {
     Keep = 128,          // first: position, velocity and density are kept
     Resume = 256,        // starts from what was kept instead of what is there
     KeepVelocity = 512,  // last, but before KickOn
-    KickOn = 1024        // last: another half kick
+    KickOn = 1024,       // last: another half kick
+    PressureKick = 2048  // by solved pressures
 };
 
 template <unsigned what> struct Integrate {
@@ -34,6 +35,8 @@ template <unsigned what> struct Integrate {
         Vector<R> u = load(resumesVelocity ? v.fluid.keptVelocity : v.fluid.velocity, i);
         if constexpr (what & Keep) keep(i, u);
         if constexpr (what & Kick) u = addScaled(u, dt, load(v.fluid.acceleration, i));
+        if constexpr (what & PressureKick)
+            u = addScaled(u, dt, load(v.fluid.pressureAcceleration, i));
         if constexpr (what & HalfKick) u = addScaled(u, half, load(v.fluid.acceleration, i));
         if constexpr (what & DriftDensity) driftDensity(i, way);
         if constexpr (what & (Drift | HalfDrift)) drift(i, way, u);

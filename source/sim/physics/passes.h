@@ -89,6 +89,13 @@ template <class Kernel> struct ComputeWallMass {
 // - 1)). A sum over few neighbours says little of the fluid's density: 1/rho, which viscous forces
 // go with twice, is never more than 1.25/rho0. (Without that, single drops at walls were seen to
 // blow up in thick fluid.)
+template <class I> HD inline Real<I> storeDensity(const View& v, I i, Real<I> rho) {
+    using R = Real<I>;
+    const R inverse = R(1) / max(rho, R(real(0.8) * v.c.restDensity));
+    store(v.fluid.density, i, rho);
+    store(v.fluid.inverseDensity, i, inverse);
+    return inverse;
+}
 template <class I> HD inline void storeState(const View& v, I i, Real<I> rho) {
     using R = Real<I>;
     const R ratio = rho * R(1 / v.c.restDensity);
@@ -96,14 +103,12 @@ template <class I> HD inline void storeState(const View& v, I i, Real<I> rho) {
     for (int k = 1; k < v.c.gamma; ++k) power = power * ratio;
     const R pressure = max(mulAdd(R(v.c.stiffness), power - R(1), R(v.c.backgroundPressure)),
                            R(v.c.leastPressure));
-    const R inverse = R(1) / max(rho, R(real(0.8) * v.c.restDensity));
-    store(v.fluid.density, i, rho);
-    store(v.fluid.inverseDensity, i, inverse);
+    const R inverse = storeDensity(v, i, rho);
     store(v.fluid.pressureOverRho2, i, pressure * inverse * inverse);
 }
 
-// rho_i = sum_j m W + sum_b m_b W.
-template <class Kernel> struct ComputeDensity {
+// rho_i = sum_j m W + sum_b m_b W; pressure follows from it, unless it is `solved` for.
+template <class Kernel, bool solved = false> struct ComputeDensity {
     using Index = ICluster;
     using R = Real<ICluster>;
     View v;
@@ -121,7 +126,11 @@ template <class Kernel> struct ComputeDensity {
             walls = mulAdd(load(v.walls.mass, j), Kernel::w(p.q), walls);
         });
         const R others = fluid + R((v.c.selfWeight - 1) * Kernel::w(real(0)));
-        storeState(v, i, R(v.c.kernelScale) * (others + total(walls)));
+        const R rho = R(v.c.kernelScale) * (others + total(walls));
+        if constexpr (solved)
+            storeDensity(v, i, rho);
+        else
+            storeState(v, i, rho);
     }
     // For lists with each pair once (HalfListSums).
     static constexpr Lists lists = Lists::BuildInner;
@@ -399,6 +408,15 @@ struct ComputeForces<Kernel, which, TermList<Terms...>, role> {
     }
 };
 
+// a_i = body force, where no term is wanted.
+struct ApplyBodyForce {
+    using Index = Lanes4;
+    View v;
+    HD void operator()(Lanes4 i) const {
+        store(v.fluid.acceleration, i, bodyForce(v.c, gravityNow(v), load(v.fluid.position, i)));
+    }
+};
+
 // The gradient of density that hydrostatic pressure makes.
 template <class R> HD inline Vector<R> hydrostaticSlope(const StepParameters& c,
                                                         Vector<real> gravityNow, Vector<R> x) {
@@ -590,7 +608,7 @@ template <bool volume> struct FindExtremes {
 
 // Courant's limit, s.
 HD inline real acousticStep(const StepParameters& c, real speed) {
-    return c.cfl * (c.support / 2) / (c.fastestSound + max(speed, c.solidSpeed));
+    return c.cfl * (c.support / 2) / (c.fastestSound + max(max(speed, c.solidSpeed), c.leastSpeed));
 }
 // A step is shorter where whole ones would miss the time at which the run stops.
 HD inline double untilStop(const StepState& s, double dt) {
@@ -619,7 +637,8 @@ struct ChooseTimeStep {
         if (dt <= 0) {
             const real pull = squareRoot(real(extremes->acceleration2));
             const real fastest = min(acousticStep(c, max(speed, solids)), c.maxStep);
-            dt = min(fastest, real(0.25) * squareRoot(c.support / 2 / max(pull, real(1e-12))));
+            dt = v.state->share *
+                 min(fastest, real(0.25) * squareRoot(c.support / 2 / max(pull, real(1e-12))));
         }
         v.state->longest = dt;
         if (c.fixedStep <= 0) dt = untilStop(*v.state, dt);

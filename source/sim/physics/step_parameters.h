@@ -34,6 +34,7 @@ template <class Kernel> double latticeLayer(const Scene& s, int height) {
 struct LatticeSums {
     double kernel = 0, gradient = 0, viscous = 0, shear = 0;
     double surroundings = 0;  // of WeighViscosity
+    double squares = 0;       // of (g r)^2, m^2 per spacing squared
 };
 
 template <class Kernel> LatticeSums latticeSums(const Scene& s) {
@@ -57,6 +58,7 @@ template <class Kernel> LatticeSums latticeSums(const Scene& s) {
                 const double each = norm / (ratio * ratio) * Kernel::gradient(d);
                 sums.gradient -= squared(each * double(Kernel::g(q)));
                 sums.viscous -= squared(each * double(viscous<Kernel>(q)));
+                sums.squares += r2 * double(Kernel::g(q)) * double(Kernel::g(q));
                 sums.surroundings += q < 1 ? double(q * q * q * q * viscous<Kernel>(q)) : 0;
                 const double squares = at.x * at.x * at.x * at.x + at.y * at.y * at.y * at.y +
                                        at.z * at.z * at.z * at.z;
@@ -64,6 +66,33 @@ template <class Kernel> LatticeSums latticeSums(const Scene& s) {
                     each * double(viscous<Kernel>(q)) * (r2 * r2 - squares) / (d * (d - 1));
             }
     return sums;
+}
+
+// The largest eigenvalue that Jacobi's iteration for pressures has on a lattice, found among waves
+// along its axes and diagonals: |sum_j grad W sin(k.r)|^2 / sum_j |grad W|^2.
+template <class Kernel> double largestEigenvalue(const Scene& s) {
+    const double ratio = s.simulation.support;
+    const int d = s.simulation.dimensions, n = int(ratio) + 1, across = d == 3 ? n : 0;
+    std::vector<Vec3d> slopes, places;
+    double squares = 0;
+    for (int z = -across; z <= across; ++z)
+        for (int y = -n; y <= n; ++y)
+            for (int x = -n; x <= n; ++x) {
+                const Vec3d at{double(x), double(y), double(z)};
+                const double q = length(at) / ratio;
+                if (q <= 0 || q >= 1) continue;
+                places.push_back(at), slopes.push_back(double(Kernel::g(real(q))) * at);
+                squares += dot(slopes.back(), slopes.back());
+            }
+    double largest = 0;
+    for (const Vec3d& way : {Vec3d{1, 0, 0}, Vec3d{1, 1, 0}, Vec3d{1, 1, 1}})
+        for (double k = 0.2; k < 3.2; k += 0.1) {
+            Vec3d sum{};
+            for (size_t j = 0; j < places.size(); ++j)
+                sum = sum + std::sin(k / length(way) * dot(way, places[j])) * slopes[j];
+            largest = std::max(largest, dot(sum, sum) / squares);
+        }
+    return largest;
 }
 
 // sum of w over the points of a lattice that fills a quarter, in three dimensions an eighth, of
@@ -214,6 +243,13 @@ StepParameters makeStepParameters(const Scene& s, const FluidExtent& fluid) {
     c.fastestSound = real(sound / std::sqrt(ratios.least));
     c.backgroundPressure = real(s.fluid.backgroundPressure);
     c.soundSpeed = real(sound);
+    // Nothing waits for sound. But steps have an end where nothing moves; and what floats meets
+    // what it hits with springs that are as stiff as the longest step can bear.
+    if (factsOf(s).solvesPressure) {
+        const bool floats = std::any_of(s.solids.begin(), s.solids.end(),
+                                        [](const Solid& solid) { return solid.floats(); });
+        c.fastestSound = 0, c.leastSpeed = real((floats ? 0.1 : 0.02) * sound);
+    }
 
     c.leastPressure = carriesDensity(s) ? real(-1e30) : real(0);
     c.diffusion = real(2 * s.fluid.densityDiffusion * h * sound);
@@ -229,6 +265,10 @@ StepParameters makeStepParameters(const Scene& s, const FluidExtent& fluid) {
     c.classicViscosity = real(s.fluid.viscosity * particleMass(s) /
                               (rho0 * 3.14159265358979323846 * std::pow(R, 5)) / c.gradientScale);
     addRareForces(s, mass, c);
+    c.densityShare = s.solver.densityShare, c.relaxation = 0;
+    if (factsOf(s).solvesPressure)
+        c.relaxation = real(s.solver.relaxation / largestEigenvalue<Kernel>(s));
+    c.latticeSquares = real(sums.squares * dx * dx) * c.gradientScale * c.gradientScale;
     c.eta2 = real(0.01 * h * h);
     c.accelerationLimit =
         s.simulation.accelerationLimit > 0 ? real(s.simulation.accelerationLimit) : real(1e18);
@@ -255,8 +295,10 @@ StepParameters makeStepParameters(const Scene& s, const FluidExtent& fluid) {
     c.inversePeriod = {inverse(period.x), inverse(period.y), inverse(period.z)};
     c.restitution = s.walls.restitution, c.friction = s.walls.friction;
     const double most = s.time.maxStep > 0 ? double(s.time.maxStep) : 1e9;
-    c.cfl = s.time.cfl, c.maxStep = real(std::min(most, longestStep(s))),
-    c.restSpeed = s.time.restSpeed;
+    double longest = std::min(most, longestStep(s));
+    if (factsOf(s).solvesPressure && s.fluid.artificialViscosity > 0)
+        longest = std::min(longest, h / (s.fluid.artificialViscosity * sound));
+    c.cfl = s.time.cfl, c.maxStep = real(longest), c.restSpeed = s.time.restSpeed;
     c.fixedStep = s.time.mode == TimeMode::Fixed ? real(s.time.step) : real(0);
     return c;
 }

@@ -21,13 +21,15 @@ enum Needs : unsigned {
     Density = 32,
     Moments = 64,
     Mixture = 128,
-    ViscousVolume = 256
+    ViscousVolume = 256,
+    Mirrored = 512
 };
 
 // What terms read of one particle.
 template <class R> struct PairInput {
     Vector<R> velocity;
-    R pressureOverRho2, inverseDensity, viscousVolume, pressure, density, rootMassRatio, viscosity;
+    R pressureOverRho2, inverseDensity, viscousVolume, pressure, density, rootMassRatio, viscosity,
+        mirrored;
 };
 
 template <unsigned needs, class I>
@@ -41,6 +43,7 @@ HD inline PairInput<Real<I>> loadPairInput(const Particles& p, I i) {
         const Real<I> rho = load(p.density, i);
         s.pressure = s.pressureOverRho2 * rho * rho;
     }
+    if constexpr (needs & Mirrored) s.mirrored = load(p.mirrored, i);
     if constexpr (needs & Density) s.density = massRatio(p, i) * load(p.density, i);
     if constexpr (needs & Mixture)
         s.rootMassRatio = squareRoot(load(p.massRatio, i)), s.viscosity = load(p.viscosity, i);
@@ -52,6 +55,7 @@ HD inline PairInput<Real<I>> loadPairInput(const Particles& p, I i) {
 template <class R> struct Wall {
     R mass, pressureOverRho2;
     Vector<R> velocity, own;
+    Vector<R> pull;  // 1/rho0 times what pulls at fluid beside it, in its own frame
 };
 
 template <unsigned needs, class I> HD inline Wall<Real<I>> loadWall(const Particles& p, I i) {
@@ -106,6 +110,20 @@ struct PressureForce {
                                                        const Weights<R>& k, const PairInput<R>& i,
                                                        const Wall<R>& b, A& a) {
         a.addPressure(b.mass * k.g * (i.pressureOverRho2 + b.pressureOverRho2), p.r);
+    }
+};
+
+// The same where pressures are solved for: walls mirror the fluid's, and have what fluid at rest
+// would have more (solver/pressure_passes.h).
+struct MirroredPressureForce {
+    static constexpr unsigned needs = Mirrored;
+    template <class R, class A> HD static void addWall(const StepParameters&, const Pair<R>& p,
+                                                       const Weights<R>& k, const PairInput<R>& i,
+                                                       const Wall<R>& b, A& a) {
+        a.addPressure(
+            b.mass * k.g *
+                (mulAdd(i.pressureOverRho2, i.mirrored, i.pressureOverRho2) - dot(b.pull, p.r)),
+            p.r);
     }
 };
 

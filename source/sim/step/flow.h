@@ -32,6 +32,7 @@ template <class Device> struct Flow {
           search(device, makeGrid(s, size_t(fluidCount) + size_t(wallCount))) {
         if (carriesDensity(scene)) fluid.carryDensity();
         if (shiftsParticles(scene)) fluid.shift(), walls.haveDensity();
+        if (factsOf(scene).solvesPressure) fluid.solvePressure();
         if (scene.time.integrator == Integrator::VelocityVerlet) fluid.keepVelocity();
         if (scene.time.integrator == Integrator::PredictorCorrector) fluid.keepState();
         uploadWalls();
@@ -77,12 +78,17 @@ template <class Device> struct Flow {
         return NeighbourSearch<Device>::keepsLists && !carriesDensity(scene) &&
                !factsOf(scene).isHistorical && scene.simulation.accelerationLimit <= 0;
     }
-    bool wallsCarryPressure() const { return wallCount > 0 && !factsOf(scene).isHistorical; }
-    // Or there are terms that would ask.
-    bool fluidSticks() const {
-        const bool asked =
-            isMultiFluid(scene) || scene.simulation.pressureForm == PressureForm::Mean;
-        return wallsCarryPressure() && (asked || largestViscosity(scene) > 0 || letsSlip(scene));
+    // And look for fluid. Solved pressures are mirrored instead, but solids are told what they
+    // feel.
+    bool wallsCarryPressure() const {
+        const bool asked = !factsOf(scene).solvesPressure || solidCount > 0 || wantsVelocities();
+        return wallCount > 0 && !factsOf(scene).isHistorical && asked;
+    }
+    bool fluidSticks() const { return wallsCarryPressure() && wantsVelocities(); }
+    // Whether terms ask for velocities of walls that make fluid stick.
+    bool wantsVelocities() const {
+        return isMultiFluid(scene) || scene.simulation.pressureForm == PressureForm::Mean ||
+               largestViscosity(scene) > 0 || letsSlip(scene);
     }
     // s, that a step can take.
     double longestStep() const {
@@ -107,6 +113,13 @@ template <class Device> struct Flow {
         }
         densities.resize(state.particles.positions.size(), float(parameters.restDensity));
         return densities;
+    }
+    // p / rho^2 that a solve begins with: at the beginning of a run those of the placement.
+    std::vector<float> pressuresOf(const RunState& state) const {
+        if (!state.pressures.empty()) return state.pressures;
+        std::vector<float> out = state.particles.pressures;
+        for (float& p : out) p /= scene.fluid.restDensity * scene.fluid.restDensity;
+        return out;
     }
     StepState readClock() const {
         StepState s;

@@ -4,6 +4,7 @@
 
 #include "scene/formulation.h"
 #include "sim/parts/block_time_steps.h"
+#include "sim/solver/pressure_solver.h"
 #include "sim/step/flow.h"
 #include "sim/parts/part.h"
 #include "sim/step/plan.h"
@@ -24,13 +25,16 @@ template <class Parts, class F> void forEachPart(const Parts& parts, const F& f)
 // `Parts`: a tuple of references, in the order in which they act.
 template <class Device, class K, class Parts> class StepMaker {
 public:
-    StepMaker(Flow<Device>& flow, BlockTimeSteps<Device>& blocks, const Parts& parts)
-        : flow_(flow), scene_(flow.scene), blocks_(blocks), parts_(parts) {}
+    StepMaker(Flow<Device>& flow, BlockTimeSteps<Device>& blocks, PressureSolver<Device>& solver,
+              const Parts& parts)
+        : flow_(flow), scene_(flow.scene), blocks_(blocks), solver_(solver), parts_(parts) {}
 
     Plan plan() {
         switch (scene_.time.integrator) {
             case Integrator::SymplecticEuler:
-                blocks_.areOn() ? blockTimeSteps() : symplecticEuler();
+                solves()          ? incompressible()
+                : blocks_.areOn() ? blockTimeSteps()
+                                  : symplecticEuler();
                 break;
             case Integrator::VelocityVerlet:
                 velocityVerlet();
@@ -104,6 +108,29 @@ private:
         add("integrate", onFluid<Integrate<Kick | Drift>>);
         end();
     }
+    // Symplectic Euler, with pressures that keep densities from growing by where it leads.
+    void incompressible() {
+        evaluateForces(Initial::Yes);
+        add("gradients", onPairsOrFluid<SumGradients<K, inner>>);
+        chooseStep();
+        add("kick", onFluid<Integrate<Kick>>);
+        add("source", onPairsOrFluid<FindSource<K, inner>>);
+        plan_.add("begin solve", [&solver = solver_] { solver.begin(); });
+        plan_.beginLoop();
+        add("pressure forces", onPairsOrFluid<AccelerateByPressure<K, inner>>);
+        add("relax pressure", onPairsOrFluid<RelaxPressure<K, inner>>);
+        plan_.add("error", [&solver = solver_] { solver.findError(); });
+        plan_.endLoop([&solver = solver_] { return solver.isDone(); });
+        plan_.add("shorten steps", [&solver = solver_] { solver.shortenSteps(); });
+        add("pressure kick", onFluid<Integrate<PressureKick>>);
+        addPartForces(Initial::No, true);
+        move({2, true});
+        plan_.add(
+            "extremes", [&flow = flow_] { boundMove(flow); }, Initial::No,
+            keepsLists ? "" : noLists);
+        add("drift", onFluid<Integrate<Drift>>);
+        end();
+    }
     // Symplectic Euler from one substep to the next, until all particles have ended their steps.
     void blockTimeSteps() {
         plan_.beginLoop();
@@ -148,6 +175,7 @@ private:
             },
             initial, keepsLists ? "" : noLists);
         carriesDensity(scene_) ? add("equation of state", onFluid<ApplyEquationOfState>, initial)
+        : solves()             ? add("density", onPairsOrFluid<ComputeDensity<K, true>>, initial)
                                : add("density", onPairsOrFluid<ComputeDensity<K>>, initial);
         add("walls", wallPass(), initial, whyNoWallPressure());
         add("surroundings",
@@ -155,7 +183,13 @@ private:
                                    : onPairsOrFluid<WeighViscosity<K, inner>>,
             initial, whyViscosityIsNotWeighed(flow_));
         add("forces", forcePass(), initial);
-        forEachPart(parts_, [&](auto& part) { part.addForces(plan_, initial); });
+        addPartForces(initial, false);
+    }
+    // Of parts that feel the fluid's pressure when that is known: after it has been solved for.
+    void addPartForces(Initial initial, bool isSolved) {
+        forEachPart(parts_, [&](auto& part) {
+            if ((solves() && part.feelsPressure) == isSolved) part.addForces(plan_, initial);
+        });
     }
     void chooseStep() {
         const bool needed =
@@ -234,6 +268,10 @@ private:
         return withViscosityForm(scene_, [this](auto form) { return forcesOf<form.value>(); });
     }
     template <ViscosityForm form> Pass forcesOf() const {
+        if (solves())
+            return chooseTerms(
+                scene_, [](auto terms) { return withoutPressure(terms); }, TermList<>{},
+                Viscosities<form>{});
         if (scene_.time.integrator == Integrator::Split)
             return forces<buildInner>(Viscosities<form>{});
         if (isMultiFluid(scene_))
@@ -251,6 +289,10 @@ private:
     template <class Terms> static Pass pairForces(Terms) {
         return onPairsOrFluid<ComputeForces<K, inner, Terms>>;
     }
+    static Pass withoutPressure(TermList<>) { return onFluid<ApplyBodyForce>; }
+    template <class... Ts> static Pass withoutPressure(TermList<Ts...> terms) {
+        return pairForces(terms);
+    }
     template <Lists lists, class Terms> static Pass forces(Terms) {
         return onFluid<ComputeForces<K, lists, Terms>>;
     }
@@ -259,10 +301,12 @@ private:
         return shiftsParticles(scene_) ? onFluid<ComputeTransport<K, true>>
                                        : onFluid<ComputeDensityRate<K>>;
     }
+    bool solves() const { return factsOf(scene_).solvesPressure; }
     const char* whyNoWallPressure() const {
         if (flow_.wallCount == 0) return "there are no boundary particles";
-        return flow_.wallsCarryPressure() ? ""
-                                          : "walls have no pressure in the classic formulation";
+        if (flow_.wallsCarryPressure()) return "";
+        return solves() ? "walls mirror the fluid's pressure"
+                        : "walls have no pressure in the classic formulation";
     }
 
     void add(const char* name, Pass pass, Initial initial = Initial::No, const char* skipped = "") {
@@ -276,6 +320,7 @@ private:
     Flow<Device>& flow_;
     const Scene& scene_;
     BlockTimeSteps<Device>& blocks_;
+    PressureSolver<Device>& solver_;
     Parts parts_;
     Plan plan_;
 };

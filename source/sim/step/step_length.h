@@ -29,9 +29,19 @@ template <class Device> void chooseTimeStep(Flow<Device>& flow) {
         const Integrator integrator = flow.scene.time.integrator;
         const double share = integrator == Integrator::PredictorCorrector ? 0.5
                              : integrator == Integrator::Split            ? 0
+                             : factsOf(flow.scene).solvesPressure         ? 0
                                                                           : 1;
         const double dt = flow.clock.data()->dt;
         flow.search.movedAtMost(share * dt * largestSpeed(flow, dt));
+    }
+}
+
+// Where velocities are already those that the step ends with.
+template <class Device> void boundMove(Flow<Device>& flow) {
+    findExtremes<false>(flow);
+    if constexpr (NeighbourSearch<Device>::keepsLists) {
+        const double speed = std::sqrt(flow.extremes.data()->speed2);
+        flow.search.movedAtMost(flow.clock.data()->dt * std::max(speed, flow.fastestPart()));
     }
 }
 

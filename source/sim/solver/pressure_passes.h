@@ -1,0 +1,214 @@
+// The passes of the incompressible formulation's pressure solve: pressures p >= 0 with which no
+// density grows by where the velocities lead (Ihmsen 2014, Bender & Koschier 2015),
+//     b_i + dt/rho0 (D dt a)_i = 0  where p_i > 0,    (D u)_i = sum_j m (u_i - u_j).grad W
+//     a_i = -sum_j m (p_i/rho_i^2 + p_j/rho_j^2) grad W - p_i/rho_i^2 (1 + mu_i) B_i
+// with B_i = sum_b m_b grad W. b is what densities would grow by without pressure, relative to
+// rho0, and a share of what they are too large by already (Cornelis 2019 weighs both as well).
+// Walls mirror the fluid's pressure, mu = 1. What they have more, that of fluid at rest in between,
+// does not change as pressures do and is a force like others (Band 2018 extrapolate linearly, too).
+// So an iteration asks walls for B_i alone.
+#pragma once
+
+#include "sim/physics/passes.h"
+
+namespace spindrift::LANES {
+
+// Sums over a particle's fluid neighbours where no list holds each pair once (HalfListSums).
+template <class Pass, class Sum> HD inline void sumAround(const Pass& pass, ICluster i, Sum sum) {
+    const View& v = pass.v;
+    const Vector<Real<ICluster>> x = load(v.fluid.position, i);
+    const auto own = pass.input(i);
+    forNeighbours<Pass::lists>(v, v.fluidNearFluid, i, x, [&](const auto& p, JCluster j) LANE_CALL {
+        sum = sum + pass.of(p, own, pass.input(j));
+    });
+    pass.finish(i, total(sum));
+}
+
+// What walls give to a particle: B_i, and the acceleration by the pressure that they have more than
+// the particle itself, rho0 (g - a_b).(x_b - x_i). And the operator's diagonal, with F_i = sum_j m
+// grad W: -d(D a)_i / d(p_i/rho_i^2) = (F_i + (1 + mu_i) B_i).(F_i + B_i) + sum_j (m grad W)^2,
+// with the sum of squares of the lattice: beside surfaces it is less, and iterations are a little
+// more careful there. Where walls leave little room, as at the foot of a slope, what they mirror
+// would make a particle the denser the more it pushes; they mirror just so much that it doesn't.
+template <class Kernel, Lists which> struct SumGradients {
+    using Index = ICluster;
+    using R = Real<ICluster>;
+    View v;
+    HD void operator()(ICluster i) const { sumAround(*this, i, Vector<R>{R(0), R(0), R(0)}); }
+    static constexpr Lists lists = which;
+    static constexpr uint8_t activeFrom = Active;
+    static constexpr bool opposite = true;
+    struct Nothing {};
+    HD VectorField field() const { return v.fluid.pressureAcceleration; }
+    template <class I> HD Nothing input(I) const { return {}; }
+    HD Vector<R> of(const Pair<R>& p, Nothing, Nothing) const { return Kernel::g(p.q) * p.r; }
+    HD void finish(ICluster i) const { finish(i, load(field(), i)); }
+    HD void finish(ICluster i, Vector<R> fluid) const {
+        const Vector<real> gravity = gravityNow(v);
+        const Vector<R> x = load(v.fluid.position, i);
+        Vector<R> walls{R(0), R(0), R(0)}, rest = walls;
+        forNeighbours<lists>(v, v.wallsNearFluid, i, x, [&](const auto& p, JCluster j) LANE_CALL {
+            const Vector<R> slope = (load(v.walls.mass, j) * Kernel::g(p.q)) * p.r;
+            const Vector<R> pull =
+                bodyForce(v.c, gravity, load(v.walls.position, j)) - ownAcceleration(v.walls, j);
+            walls = walls + slope;
+            rest = addScaled(rest, dot(pull, p.r), slope);
+        });
+        const R scale = v.c.gradientScale, zero = 0;
+        const Vector<R> toWalls = scale * total(walls), all = scale * fluid + toWalls;
+        const R push = dot(all, all), mirror = dot(toWalls, all), squares = v.c.latticeSquares,
+                bears = mulAdd(R(real(0.5)), squares, push);
+        const R mirrored = bears / max(zero - mirror, bears);
+        store(v.fluid.wallGradient, i, toWalls);
+        store(v.fluid.mirrored, i, mirrored);
+        store(v.fluid.diagonal, i, max(mulAdd(mirrored, mirror, push), zero) + squares);
+        store(v.fluid.acceleration, i,
+              addScaled(load(v.fluid.acceleration, i), R(v.c.gradientScale / v.c.restDensity),
+                        total(rest)));
+    }
+};
+
+// b_i. Where fluid is torn it may come together again until it is as dense as at rest; gaps too
+// small to be seen close like any other error of density. (Closing at once, fluid at rest falls
+// freely through every one of them, and bounces.)
+template <class Kernel, Lists which> struct FindSource {
+    using Index = ICluster;
+    using R = Real<ICluster>;
+    static constexpr double small = 0.02;  // share of rho0
+    View v;
+    HD void operator()(ICluster i) const { sumAround(*this, i, R(0)); }
+    static constexpr Lists lists = which;
+    static constexpr uint8_t activeFrom = Active;
+    static constexpr bool opposite = false;
+    HD ScalarField field() const { return v.fluid.source; }
+    template <class I> HD Vector<R> input(I i) const { return load(v.fluid.velocity, i); }
+    HD R of(const Pair<R>& p, Vector<R> own, Vector<R> other) const {
+        return Kernel::g(p.q) * dot(own - other, p.r);
+    }
+    HD void finish(ICluster i) const { finish(i, load(field(), i)); }
+    HD void finish(ICluster i, R fluid) const {
+        const Vector<R> own = input(i);
+        R walls = 0;
+        forNeighbours<lists>(v, v.wallsNearFluid, i, load(v.fluid.position, i),
+                             [&](const auto& p, JCluster j) LANE_CALL {
+                                 const Vector<R> apart = own - ownVelocity(v.walls, j);
+                                 walls = mulAdd(load(v.walls.mass, j) * Kernel::g(p.q),
+                                                dot(apart, p.r), walls);
+                             });
+        const R perRest = 1 / v.c.restDensity,
+                grown = R(v.c.gradientScale) * (fluid + total(walls));
+        const R error = mulAdd(perRest, load(v.fluid.density, i), R(-1)),
+                torn = min(error + R(real(small)), R(0));
+        store(field(), i,
+              mulAdd(perRest * R(real(v.state->dt)), grown,
+                     mulAdd(R(v.c.densityShare), error - torn, torn)));
+        store(v.fluid.lastPressure, i, load(v.fluid.pressureOverRho2, i));
+    }
+};
+
+// a_i, of pressures as they are.
+template <class Kernel, Lists which> struct AccelerateByPressure {
+    using Index = ICluster;
+    using R = Real<ICluster>;
+    View v;
+    HD void operator()(ICluster i) const { sumAround(*this, i, Vector<R>{R(0), R(0), R(0)}); }
+    static constexpr Lists lists = which;
+    static constexpr uint8_t activeFrom = Active;
+    static constexpr bool opposite = true;
+    HD VectorField field() const { return v.fluid.pressureAcceleration; }
+    template <class I> HD R input(I i) const { return load(v.fluid.pressureOverRho2, i); }
+    HD Vector<R> of(const Pair<R>& p, R own, R other) const {
+        return (Kernel::g(p.q) * (own + other)) * p.r;
+    }
+    HD void finish(ICluster i) const { finish(i, load(field(), i)); }
+    HD void finish(ICluster i, Vector<R> fluid) const {
+        const R pressure = input(i);
+        const Vector<R> walls =
+            mulAdd(pressure, load(v.fluid.mirrored, i), pressure) * load(v.fluid.wallGradient, i);
+        store(field(), i, R(-v.c.gradientScale) * fluid - walls);
+    }
+};
+
+// What densities still grow by, and better pressures: a relaxed Jacobi iteration, and from there on
+// in the direction of the last change (Nesterov 1983, with p >= 0 Beck & Teboulle 2009).
+template <class Kernel, Lists which> struct RelaxPressure {
+    using Index = ICluster;
+    using R = Real<ICluster>;
+    View v;
+    HD void operator()(ICluster i) const { sumAround(*this, i, R(0)); }
+    static constexpr Lists lists = which;
+    static constexpr uint8_t activeFrom = Active;
+    static constexpr bool opposite = false;
+    HD ScalarField field() const { return v.fluid.residual; }
+    template <class I> HD Vector<R> input(I i) const {
+        return load(v.fluid.pressureAcceleration, i);
+    }
+    HD R of(const Pair<R>& p, Vector<R> own, Vector<R> other) const {
+        return Kernel::g(p.q) * dot(own - other, p.r);
+    }
+    HD void finish(ICluster i) const { finish(i, load(field(), i)); }
+    HD void finish(ICluster i, R fluid) const {
+        const real dt2 = real(v.state->dt * v.state->dt);
+        const R change =
+            mulAdd(R(v.c.gradientScale), fluid, dot(input(i), load(v.fluid.wallGradient, i)));
+        const R left = mulAdd(R(dt2 / v.c.restDensity), change, load(v.fluid.source, i));
+        const R step = R(v.c.relaxation * v.c.restDensity / dt2) / load(v.fluid.diagonal, i);
+        const R zero = 0, last = load(v.fluid.lastPressure, i),
+                better = max(mulAdd(step, left, load(v.fluid.pressureOverRho2, i)), zero);
+        store(v.fluid.lastPressure, i, better);
+        store(v.fluid.pressureOverRho2, i,
+              max(mulAdd(R(real(v.state->momentum)), better - last, better), zero));
+        store(field(), i, left);
+    }
+};
+
+// What densities grow by in spite of pressures, relative to rho0.
+struct SolveError {
+    double growth = 0, count = 0;
+    HD_OUT void add(const SolveError& o) { growth += o.growth, count += o.count; }
+};
+struct SumError {
+    Particles p;
+    HD void addTo(SolveError& e, int i) const {
+        if (p.id[i] >= 0) e.add({double(max(load(p.residual, i), real(0))), 1});
+    }
+};
+
+// How far the next iteration goes on in the direction of the last change: the further the longer it
+// goes well, and where errors grow from the beginning (O'Donoghue & Candes 2015).
+struct Momentum {
+    double weight = 1, growth = 1e300;
+    HD static double after(double weight) { return (1 + sqrt(1 + 4 * weight * weight)) / 2; }
+};
+struct BeginSolve {
+    using Index = int;
+    StepState* state;
+    Momentum* m;
+    HD void operator()(int) const { *m = Momentum{}, state->momentum = 0; }
+};
+struct ChooseMomentum {
+    using Index = int;
+    StepState* state;
+    const SolveError* error;
+    Momentum* m;
+    HD void operator()(int) const {
+        const double weight = error->growth > m->growth ? 1 : Momentum::after(m->weight);
+        state->momentum = (weight - 1) / Momentum::after(weight);
+        *m = {weight, error->growth};
+    }
+};
+
+// Where pressures were not found the next steps are shorter, by half each time.
+struct ShortenSteps {
+    using Index = int;
+    StepState* state;
+    const SolveError* error;
+    double allowed;
+    HD void operator()(int) const {
+        const bool found = error->growth <= allowed * error->count;
+        const double share = state->share * (found ? 1.2 : 0.5);
+        state->share = share > 1 ? 1 : share < 0.05 ? 0.05 : share;
+    }
+};
+
+}  // namespace spindrift::LANES
