@@ -307,6 +307,29 @@ TEST(Floating, WhatIsDraggedIntoAWallLeavesRoomForFluid) {
     }
 }
 
+// A beach that reaches through the walls is lifted, but not through the water on it, and comes back
+// as far as that lets it.
+TEST(Floating, DraggedPlanesDoNotCrushFluid) {
+    const Scene scene =
+        cubeWith({"simulation.dimensions=2", "simulation.spacing=0.02", "fluid.sound_speed=30",
+                  R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[1,0.4,1]}])",
+                  R"(solids=[{"shape":"plane","center":[0.5,0,0.5],"normal":[-0.4,1,0]}])"});
+    auto simulation = makeSimulation(scene);
+    double squeezed = 0, time = 0, highest = 0;
+    for (const float height : {1.2f, 0.0f}) {
+        simulation->hold({0, {0.5f, height, 0.5f}});
+        for (int k = 0; k < 50; ++k) {
+            runUntil(*simulation, time += 0.01);
+            const Measurement m = simulation->measure();
+            squeezed = std::max(squeezed, m.maxDensityError);
+            highest = std::max(highest, m.solids[0].position.y);
+        }
+    }
+    EXPECT_GT(highest, 0.2) << "it was lifted";
+    EXPECT_LT(squeezed, 0.3);
+    EXPECT_NEAR(simulation->measure().solids[0].position.y, 0, 0.05) << "it came down again";
+}
+
 // A cylinder that is thrown into a box of fluid at rest gives its momentum to both, the fluid's
 // share by its added mass (Lamb 1932; 1.07 in this box). A tenth to ten times as dense.
 TEST(Floating, WhatIsThrownTakesItsAddedMassAlong) {

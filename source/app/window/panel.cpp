@@ -259,12 +259,19 @@ void panel(Ui& ui, int windowHeight) {
     rememberPopup(ui);
 }
 
-// In the middle of the picture.
+// In the middle of the picture, or over the panel too where the picture is too narrow; what the
+// window has no room for scrolls.
 void beginBox(const Ui& ui, const char* name) {
+    const ImVec2 all{float(ui.area.x + ui.area.width), float(ui.area.height)};
+    const ImGuiWindow* before = ImGui::FindWindowByName(name);
+    const float half = before ? 0.5f * before->Size.x : 0,
+                middle = float(ui.area.x) + 0.5f * float(ui.area.width);
     ImGui::SetNextWindowPos(
-        {float(ui.area.x) + 0.5f * float(ui.area.width), 0.5f * float(ui.area.height)},
+        {std::max(std::min(middle, all.x - half), std::min(half, 0.5f * all.x)), 0.5f * all.y},
         ImGuiCond_Always, {0.5f, 0.5f});
+    ImGui::SetNextWindowSizeConstraints({0, 0}, all);
     ImGui::Begin(name, nullptr, note);
+    ImGui::BringWindowToDisplayFront(ImGui::GetCurrentWindow());
 }
 
 // Why the run stands still; "" while it doesn't.

@@ -161,9 +161,9 @@ private:
         solids_.reserveLoads(flow_.walls.slots());
         handMass_ = massInHand(flow_.scene, flow_.scene.solids[size_t(solid)]);
     }
-    // Of fluid in its place, kg; thin ones take more along than that. 0: of a plane.
-    static double massInHand(const Scene& scene, Solid solid) {
-        if (solid.shape == Shape::Plane) return 0;
+    // Of fluid in its place, kg; thin ones take more along than that, planes all of it.
+    double massInHand(const Scene& scene, Solid solid) const {
+        if (solid.shape == Shape::Plane) return particleMass(scene) * flow_.fluidCount;
         solid.density = scene.fluid.restDensity;
         Vec3d side = 2.0 * halfExtent(solid);
         if (scene.simulation.dimensions == 2) side.z = 0;

@@ -169,7 +169,8 @@ struct FindRoom {
         const real left = max(-surface(s, own, n), real(0)) + spacing;
         const Vector<real> arm = turned(s, own);
         Room room;
-        besideBox(room, s, arm, left);
+        const bool isPlane = s.planes == 1;  // which goes on behind the box
+        if (!isPlane) besideBox(room, s, arm, left);
         for (int other = 0; other < v.solidCount; ++other)
             if (other != solid && bodies[other].mass <= 0)
                 beside(room, v.solids[other], s, arm, left);
@@ -293,7 +294,8 @@ struct MoveFloating {
         if (hand.mass > 0 && speed > stops) speed = stops;  // it has to be slowed down again
         m.velocity = (far > 0 ? speed / far : 0) * way;
         if (hand.mass > 0)
-            m.velocity = hand.room->slowed(pushed(before, m.velocity, fluidOn(s)), time);
+            m.velocity = hand.room->slowed(pushed(before, m.velocity, fluidOn(s)), time,
+                                           double(bodies[s].deepestBall) / 0.75);
         if (v.c.dimensions == 2) m.velocity.z = 0;
         const Vec3d change = (1 / (kick * dt)) * (m.velocity - before);
         m.acceleration = m.acceleration + 0.25 * (change - m.acceleration);

@@ -76,11 +76,14 @@ struct Room {
         least = o.least;
         for (int k = 0; k < 3; ++k) away[k] = o.away[k];
     }
-    // What is left of a velocity where the rest of the way takes `time`.
-    HD Vec3d slowed(Vec3d u, double time) const {
+    // What is left of a velocity where the rest of the way takes `time`. Where it reaches through a
+    // side of the box no fluid is between.
+    HD Vec3d slowed(Vec3d u, double time, double spacing) const {
+        auto fastest = [&](double way) {
+            return way > 0 ? way / time : way < -2 * spacing ? 1e30 : 0.0;
+        };
         for (int k = 0; k < 3; ++k) {
-            const double down = low[k] > 0 ? low[k] / time : 0,
-                         up = high[k] > 0 ? high[k] / time : 0;
+            const double down = fastest(low[k]), up = fastest(high[k]);
             u[k] = u[k] < -down ? -down : u[k] > up ? up : u[k];
         }
         const Vec3d n{away[0], away[1], away[2]};
