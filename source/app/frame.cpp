@@ -124,9 +124,9 @@ Range Frame::range(const View& view) const {
     const auto run = run_.find(view.colorBy);
     Range r = view.range == RangeMode::Frame || run == run_.end() ? seen_ : run->second.range();
     if (view.range == RangeMode::Fixed) r = {view.rangeMin, view.rangeMax};
-    // Fluid at rest must not show its round-off in all colours.
+    // Fluid at rest must not show its round-off in all colours: it has the lowest one.
     const float least = 1e-5f * std::max({std::abs(r.min), std::abs(r.max), 1e-3f});
-    if (!(r.max - r.min >= least)) r.max = r.min + least;
+    if (!(r.max - r.min >= least)) r.max = r.min;
     return r;
 }
 

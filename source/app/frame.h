@@ -36,7 +36,8 @@ public:
     void blit(int x, int y) const { renderer_.blit(x, y); }
     std::optional<Vec3> surfaceAt(int x, int y) const { return renderer_.surfaceAt(x, y); }
 
-    // Values at the ends of the colour table, in the unit of the coloured quantity.
+    // Values at the ends of the colour table, in the unit of the coloured quantity; one value where
+    // all have the same, but for round-off.
     Range range(const View&) const;
 
 private:

@@ -39,13 +39,16 @@ std::vector<std::string> shippedScenes() {
     return names;
 }
 
-std::string titleOf(const std::string& file) {
+std::string titleOf(const Scene& scene) {
+    std::string name = scene.name;
+    if (name.find_first_not_of("0123456789") == std::string::npos) name = "original, file " + name;
+    name[0] = char(std::toupper(static_cast<unsigned char>(name[0])));
+    return name;
+}
+
+std::string titleOfFile(const std::string& file) {
     try {
-        std::string name = loadScene(file).name;
-        if (name.find_first_not_of("0123456789") == std::string::npos)
-            name = "original, file " + name;
-        name[0] = char(std::toupper(static_cast<unsigned char>(name[0])));
-        return name;
+        return titleOf(loadScene(file));
     } catch (const Error&) { return ""; }
 }
 

@@ -13,9 +13,11 @@ namespace spindrift {
 
 // Names of the scenes in configs/, as findScene takes them.
 std::vector<std::string> shippedScenes();
-// What a list calls the scene in a file: its name, with a capital. Those of the original program
-// have numbers for names. "" when it can't be read.
-std::string titleOf(const std::string& file);
+// What lists call a scene: its name, with a capital. Those of the original program have numbers for
+// names.
+std::string titleOf(const Scene&);
+// The same of the scene in a file; "" when it can't be read.
+std::string titleOfFile(const std::string& file);
 // The folder that the shipped scenes are in.
 std::string configsFolder();
 

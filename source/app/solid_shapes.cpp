@@ -52,15 +52,23 @@ void addPolygon(SolidShape& shape, const Polygon& p, Vec3d normal) {
         shape.edges.push_back({toFloat(p[i]), toFloat(p[(i + 1) % p.size()])});
 }
 
-// What the planes of `own` and `limits` bound, the faces of `own` only.
-void addFaces(SolidShape& shape, const std::vector<HalfSpace>& own,
-              const std::vector<HalfSpace>& limits, double reach) {
-    for (size_t f = 0; f < own.size(); ++f) {
-        Polygon face = faceOf(own[f], reach);
-        for (size_t k = 0; k < own.size(); ++k)
-            if (k != f) face = cut(face, own[k]);
-        for (const HalfSpace& limit : limits) face = cut(face, limit);
-        addPolygon(shape, face, own[f].normal);
+bool isWithin(const Polygon& polygon, const HalfSpace& plane, double slack) {
+    return std::all_of(polygon.begin(), polygon.end(), [&](Vec3d p) {
+        return std::abs(dot(plane.normal, p) - plane.offset) < slack;
+    });
+}
+
+// The faces of what some planes bound. Of two in the same place, where nothing is between them, one
+// is enough: both would flicker.
+void addFaces(SolidShape& shape, const std::vector<HalfSpace>& planes, double reach) {
+    for (size_t f = 0; f < planes.size(); ++f) {
+        Polygon face = faceOf(planes[f], reach);
+        for (size_t k = 0; k < planes.size(); ++k)
+            if (k != f) face = cut(face, planes[k]);
+        const bool isTwin = std::any_of(planes.begin(), planes.begin() + long(f), [&](auto& plane) {
+            return isWithin(face, plane, 1e-7 * reach);
+        });
+        if (!isTwin) addPolygon(shape, face, planes[f].normal);
     }
 }
 
@@ -140,16 +148,16 @@ SolidShape shapeOf(const Scene& scene, const Solid& solid) {
         addCylinder(shape, int(solid.axis), solid.radius,
                     flat && solid.axis == Axis::Z ? depth : 0.5 * double(solid.height));
     else {
-        std::vector<HalfSpace> own, limits;
-        for (int k = 0; k < convex.planes; ++k) own.push_back({convex.normal[k], convex.offset[k]});
+        std::vector<HalfSpace> planes;
+        for (int k = 0; k < convex.planes; ++k)
+            planes.push_back({convex.normal[k], convex.offset[k]});
         for (int k = 0; k < 3; ++k) {
             if (solid.shape != Shape::Plane && !(flat && k == 2)) continue;
             Vec3d along{0, 0, 0};
             along[k] = 1;
-            limits.push_back({along, high[k]}), limits.push_back({-1.0 * along, -low[k]});
+            planes.push_back({along, high[k]}), planes.push_back({-1.0 * along, -low[k]});
         }
-        addFaces(shape, own, limits,
-                 4 * (length(high - low) + double(reachOf(solid)) + length(low)));
+        addFaces(shape, planes, 4 * (length(high - low) + double(reachOf(solid)) + length(low)));
     }
     return shape;
 }

@@ -35,11 +35,11 @@ std::vector<double> ticks(double min, double max, int count) {
 std::string tickLabel(double value, double step) {
     const double largest = std::max(std::abs(value), std::abs(step));
     if (value == 0) return "0";
-    const double digits = step > 0 ? std::ceil(std::log10(largest / step) - 1e-6) + 1
-                                   : 3;  // to tell neighbours apart
+    if (!(step > 0)) return fmt::format("{:.4g}", value);  // it is alone
+    const double digits = std::ceil(std::log10(largest / step) - 1e-6) + 1;
     if (largest >= 1e6 || largest < 1e-3)
         return fmt::format("{:.{}g}", value, int(std::clamp(digits, 3.0, 9.0)));
-    const int decimals = step > 0 ? std::clamp(int(std::ceil(-std::log10(step) - 1e-6)), 0, 6) : 3;
+    const int decimals = std::clamp(int(std::ceil(-std::log10(step) - 1e-6)), 0, 8);
     return fmt::format("{:.{}f}", value, decimals);
 }
 
@@ -55,7 +55,7 @@ std::vector<Mark> fittingMarks(double min, double max, float bar, float overhang
         for (double value : values) {
             const std::string label = tickLabel(value, step);
             const float half = 0.5f * widthOf(label),
-                        at = bar * (max > min ? float((value - min) / (max - min)) : 0.5f);
+                        at = bar * (max > min ? float((value - min) / (max - min)) : 0);
             const float last = std::max(bar + overhang - half, half - overhang);
             const float middle = std::clamp(at, half - overhang, last);
             fits &= middle - half > end;
@@ -122,7 +122,7 @@ void drawLegend(Overlay& overlay, int width, int height, const LegendText& text,
         overlay.rectangle(x + from, barTop, to - from, thick, opaque(table[i]));
     }
     const auto widthOf = [&](std::string_view label) { return overlay.textWidth(label); };
-    for (const Mark& mark : fittingMarks(min, max, bar, 16 * unit, widthOf)) {
+    for (const Mark& mark : fittingMarks(min, max, bar, 12 * unit, widthOf)) {
         const float tick = std::round(x + mark.at);
         overlay.rectangle(tick - std::round(unit) / 2, barTop + thick,
                           std::max(1.0f, std::round(unit)), 5 * unit, dim);

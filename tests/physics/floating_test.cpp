@@ -140,11 +140,14 @@ TEST(Floating, HeavySolidsOnTheFloorFeelTheirBuoyancy) {
         for (int dimensions : {2, 3}) {
             const double displaced = dimensions == 2 ? c.area : c.volume;
             if (displaced == 0) continue;
-            auto tank = tankWith({c.form, 2000, dimensions, 4});
-            runUntil(*tank, 0.3);
-            const SolidMeasurement s = tank->measure().solids[0];
-            EXPECT_NEAR(s.position.y, c.height, 0.001) << c.form << dimensions;
-            EXPECT_NEAR(s.pressureForce.y / (9.81e3 * displaced), 1, 0.02) << c.form << dimensions;
+            for (double density : {1100, 2000}) {
+                SCOPED_TRACE(c.form + std::to_string(dimensions) + " " + std::to_string(density));
+                auto tank = tankWith({c.form, density, dimensions, 4});
+                runUntil(*tank, 0.3);
+                const SolidMeasurement s = tank->measure().solids[0];
+                EXPECT_NEAR(s.position.y, c.height, 0.001);
+                EXPECT_NEAR(s.pressureForce.y / (9.81e3 * displaced), 1, 0.02);
+            }
         }
 }
 
@@ -277,6 +280,54 @@ TEST(Floating, MouseDragsThem) {
             EXPECT_NEAR(simulation->measure().solids[0].position.x, middle.x, 1e-6);
         }
     }
+}
+
+// A hand as strong as that of the mouse drags a block through water into the wall, or into another
+// block: fluid between them gets away before it is crushed.
+TEST(Floating, WhatIsDraggedIntoAWallLeavesRoomForFluid) {
+    const std::string block = R"(solids=[{"shape":"block","min":[0.3,0.1,0],"max":[0.4,0.34,1]})",
+                      other = R"({"shape":"block","min":[0.8,0,0],"max":[1,0.6,1]})";
+    for (const std::string& solids : {block + "]", block + "," + other + "]"}) {
+        const Scene scene =
+            cubeWith({"simulation.dimensions=2", "simulation.spacing=0.02", "fluid.sound_speed=30",
+                      R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[1,0.4,1]}])", solids});
+        auto simulation = makeSimulation(scene);
+        simulation->hold({0, {1.2f, 0.22f, 0.5f}});
+        double fastest = 0, squeezed = 0;
+        for (int k = 1; k <= 60; ++k) {
+            runUntil(*simulation, 0.01 * k);
+            const Measurement m = simulation->measure();
+            fastest = std::max(fastest, m.maxSpeed);
+            squeezed = std::max(squeezed, m.maxDensityError);
+        }
+        EXPECT_LT(fastest, 10) << solids;
+        EXPECT_LT(squeezed, 0.15) << solids;
+        const double wall = scene.solids.size() > 1 ? 0.8 : 1;
+        EXPECT_NEAR(simulation->measure().solids[0].position.x, wall - 0.07, 0.03) << solids;
+    }
+}
+
+// A beach that reaches through the walls is lifted, but not through the water on it, and comes back
+// as far as that lets it.
+TEST(Floating, DraggedPlanesDoNotCrushFluid) {
+    const Scene scene =
+        cubeWith({"simulation.dimensions=2", "simulation.spacing=0.02", "fluid.sound_speed=30",
+                  R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[1,0.4,1]}])",
+                  R"(solids=[{"shape":"plane","center":[0.5,0,0.5],"normal":[-0.4,1,0]}])"});
+    auto simulation = makeSimulation(scene);
+    double squeezed = 0, time = 0, highest = 0;
+    for (const float height : {1.2f, 0.0f}) {
+        simulation->hold({0, {0.5f, height, 0.5f}});
+        for (int k = 0; k < 50; ++k) {
+            runUntil(*simulation, time += 0.01);
+            const Measurement m = simulation->measure();
+            squeezed = std::max(squeezed, m.maxDensityError);
+            highest = std::max(highest, m.solids[0].position.y);
+        }
+    }
+    EXPECT_GT(highest, 0.2) << "it was lifted";
+    EXPECT_LT(squeezed, 0.3);
+    EXPECT_NEAR(simulation->measure().solids[0].position.y, 0, 0.05) << "it came down again";
 }
 
 // A cylinder that is thrown into a box of fluid at rest gives its momentum to both, the fluid's

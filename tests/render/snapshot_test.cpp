@@ -78,6 +78,18 @@ TEST(Snapshot, BoundaryParticlesShowOnlyWhenAsked) {
               10);  // those of solids are larger
 }
 
+// What differs by its round-off only, in a range of one value.
+TEST(Snapshot, RangeOfOneValueHasOneColour) {
+    std::vector<Vertex> zero = cube(), half = cube();
+    for (size_t i = 0; i < zero.size(); ++i)
+        zero[i].value = 0, half[i].value = 0.5f + 1e-7f * float(i % 3);
+    DrawSettings settings = studio(125);
+    settings.legend.reset();
+    const Image lowest = picture(zero, settings);
+    settings.rangeMin = settings.rangeMax = 0.5f;
+    EXPECT_EQ(changed(lowest, picture(half, settings)), 0);
+}
+
 TEST(Snapshot, LegendIsDrawnWithBarAndText) {
     DrawSettings settings = frontView(0);
     settings.legend = LegendText{"velocity", "m/s", "fixed"};

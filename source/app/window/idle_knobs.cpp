@@ -55,12 +55,13 @@ const char* whyRestIsIdle(const Scene& s, const std::string& path) {
     const bool sticks = largestViscosity(s) > 0 || s.fluid.artificialViscosity > 0;
     if (path.starts_with("walls.slip") && !sticks) return "nothing sticks to walls: no viscosity";
     if (path.starts_with("contact.") && s.objects.empty()) return "there are no elastic objects";
+    const ColorBy by = s.view.colorBy;
+    const bool isNumber = by != ColorBy::Plain && by != ColorBy::Fluid && by != ColorBy::Surface;
+    if (path.starts_with("view.range") && !isNumber) return "what is shown is not a number";
     if (path.starts_with("view.range_") && s.view.range != RangeMode::Fixed)
         return "view.range is not fixed";
     if (path == "view.solid_particles" && s.solids.empty()) return "there are no solids";
-    if (path == "view.color_map" &&
-        (s.view.colorBy == ColorBy::Plain || (s.view.colorBy == ColorBy::Fluid && isMultiFluid(s))))
-        return "what is shown has colours of its own";
+    if (path == "view.color_map" && !isNumber) return "what is shown has colours of its own";
     if (path == "view.camera.target" && s.view.camera.automaticTarget)
         return "view.camera.automatic_target is on";
     return "";

@@ -37,12 +37,15 @@ const std::vector<Control> controls = {
 
 namespace {
 
+// What is seen under the mouse, or where nothing is, as far away as the camera's target.
+Vec3 underMouse(const Ui& ui, const OrbitCamera& camera) {
+    return ui.frame.surfaceAt(int(ui.mouseX), int(ui.mouseY))
+        .value_or(camera.onPlane(ui.mouseX, ui.mouseY, float(ui.area.width), float(ui.area.height),
+                                 camera.target));
+}
+
 void startStir(Ui& ui) {
-    const int x = int(ui.mouseX), y = int(ui.mouseY);
-    const OrbitCamera camera = ui.camera();
-    ui.stirCenter = ui.frame.surfaceAt(x, y).value_or(camera.onPlane(
-        ui.mouseX, ui.mouseY, float(ui.area.width), float(ui.area.height), camera.target));
-    ui.stirBefore = ui.stirCenter;
+    ui.stirCenter = ui.stirBefore = underMouse(ui, ui.camera());
     ui.drag = Drag::Stir;  // until it turns out that an obstacle is there
     ui.grabWanted = true;
     ui.stale = true;
@@ -83,11 +86,14 @@ void dragMouse(Ui& ui, float dx, float dy) {
 void turnWheel(Ui& ui, float notches) {
     const Scene& scene = ui.player.scene;
     const float diagonal = length(scene.domain.max - scene.domain.min);
-    if (ui.held & KMOD_CTRL) return ui.setStirRadius(ui.stirRadius() * std::pow(1.15f, notches));
     OrbitCamera camera = ui.camera();
-    const Vec3 anchor = ui.frame.surfaceAt(int(ui.mouseX), int(ui.mouseY))
-                            .value_or(camera.onPlane(ui.mouseX, ui.mouseY, float(ui.area.width),
-                                                     float(ui.area.height), camera.target));
+    const Vec3 anchor = underMouse(ui, camera);
+    if (ui.held & KMOD_CTRL) {
+        ui.setStirRadius(ui.stirRadius() * std::pow(1.15f, notches));
+        ui.sizing = true;
+        if (ui.drag == Drag::None) ui.stirCenter = anchor;
+        return ui.say(fmt::format("stirs within {:.3g} m of the mouse", ui.stirRadius()));
+    }
     const float wanted = camera.distance * std::pow(0.85f, notches);
     const float allowed = std::clamp(wanted, 0.02f * diagonal, 20 * diagonal);
     camera.zoom(allowed / camera.distance, anchor);
@@ -212,6 +218,7 @@ void handleEvent(Ui& ui, const SDL_Event& event) {
             break;
         case SDL_KEYUP:
             ui.held = SDL_Keymod(event.key.keysym.mod);
+            if (ui.sizing && !(ui.held & KMOD_CTRL)) ui.sizing = false, ui.stale = true;
             break;
         case SDL_KEYDOWN:
             ui.held = SDL_Keymod(event.key.keysym.mod);
@@ -229,6 +236,8 @@ void handleEvent(Ui& ui, const SDL_Event& event) {
         case SDL_MOUSEMOTION: {
             const float x = ui.mouseX, y = ui.mouseY;
             moveTo(event.motion.x, event.motion.y);
+            if (ui.sizing && ui.drag == Drag::None)
+                ui.stirCenter = underMouse(ui, ui.camera()), ui.stale = true;
             dragMouse(ui, ui.mouseX - x, ui.mouseY - y);
             break;
         }

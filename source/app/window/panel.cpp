@@ -28,7 +28,7 @@ template <class... T> void text(fmt::format_string<T...> format, T&&... values) 
 
 template <class... T> void row(const char* name, fmt::format_string<T...> format, T&&... values) {
     ImGui::TextDisabled("%s", name);
-    ImGui::SameLine(0.42f * ImGui::GetContentRegionMax().x);
+    ImGui::SameLine(8.8f * ImGui::GetFontSize());
     text(format, std::forward<T>(values)...);
 }
 
@@ -36,7 +36,7 @@ void readTitles(Ui& ui) {
     if (!ui.scenes.empty()) return;
     for (const std::string& name : shippedScenes()) {
         const std::string file = findScene(name);
-        ui.scenes.push_back({name, file, titleOf(file)});
+        ui.scenes.push_back({name, file, titleOfFile(file)});
     }
 }
 
@@ -81,11 +81,12 @@ void folderList(Ui& ui) {
 
 void sceneList(Ui& ui) {
     ImGui::SetNextItemWidth(-1);
-    ui.popupOpen =
-        ImGui::BeginCombo("##scene", ui.player.scene.name.c_str(), ImGuiComboFlags_HeightLargest);
+    ui.popupOpen = ImGui::BeginCombo("##scene", titleOf(ui.player.scene).c_str(),
+                                     ImGuiComboFlags_HeightLargest);
     if (!ui.popupOpen) return;
     readTitles(ui);
-    ImGui::BeginChild("shipped", {0, 14 * ImGui::GetTextLineHeightWithSpacing()});
+    const float lines = float(std::min<size_t>(ui.scenes.size(), 20));
+    ImGui::BeginChild("shipped", {0, lines * ImGui::GetTextLineHeightWithSpacing()});
     for (const SceneEntry& scene : ui.scenes) {
         const bool current = scene.file == ui.player.file();
         if (ImGui::Selectable(fmt::format("{}##{}", scene.title, scene.name).c_str(), current))
@@ -130,10 +131,10 @@ void speed(Ui& ui) {
     ImGui::SetWindowFontScale(1);
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
-    ImGui::TextDisabled("real time; wanted");
+    ImGui::TextDisabled("real time; wanted %.3g x", double(wanted));
     ImGui::SameLine();
     ImGui::SetNextItemWidth(-1);
-    ImGui::SliderFloat("##speed", &wanted, 0.01f, 10, "%.3g x",
+    ImGui::SliderFloat("##speed", &wanted, 0.01f, 10, "",  // its number would hide behind the grab
                        ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip(
@@ -261,12 +262,19 @@ void panel(Ui& ui, int windowHeight) {
     rememberPopup(ui);
 }
 
-// In the middle of the picture.
+// In the middle of the picture, or over the panel too where the picture is too narrow; what the
+// window has no room for scrolls.
 void beginBox(const Ui& ui, const char* name) {
+    const ImVec2 all{float(ui.area.x + ui.area.width), float(ui.area.height)};
+    const ImGuiWindow* before = ImGui::FindWindowByName(name);
+    const float half = before ? 0.5f * before->Size.x : 0,
+                middle = float(ui.area.x) + 0.5f * float(ui.area.width);
     ImGui::SetNextWindowPos(
-        {float(ui.area.x) + 0.5f * float(ui.area.width), 0.5f * float(ui.area.height)},
+        {std::max(std::min(middle, all.x - half), std::min(half, 0.5f * all.x)), 0.5f * all.y},
         ImGuiCond_Always, {0.5f, 0.5f});
+    ImGui::SetNextWindowSizeConstraints({0, 0}, all);
     ImGui::Begin(name, nullptr, note);
+    ImGui::BringWindowToDisplayFront(ImGui::GetCurrentWindow());
 }
 
 // Why the run stands still; "" while it doesn't.
@@ -319,6 +327,15 @@ void question(Ui& ui) {
     ImGui::End();
 }
 
+// At the upper right, as wide as its rows are, and never narrower than `least`, px at scale 1.
+void beginPicked(const Ui& ui, const char* name, float least) {
+    const float edge = margin * ui.scale;
+    ImGui::SetNextWindowPos({float(ui.area.x + ui.area.width) - edge, edge}, ImGuiCond_Always,
+                            {1, 0});
+    ImGui::SetNextWindowSizeConstraints({least * ui.scale, 0}, {1e4f, 1e4f});
+    ImGui::Begin(name, nullptr, note);
+}
+
 void pickedSolid(const Ui& ui) {
     const size_t index = size_t(ui.pickedSolid);
     const auto& solids = ui.player.measurement().solids;
@@ -329,11 +346,7 @@ void pickedSolid(const Ui& ui) {
     const auto vec = [](Vec3d v) {
         return fmt::format("{:.4g}  {:.4g}  {:.4g}", v.x + 0.0, v.y + 0.0, v.z + 0.0);
     };
-    const float edge = margin * ui.scale;
-    ImGui::SetNextWindowPos({float(ui.area.x + ui.area.width) - edge, edge}, ImGuiCond_Always,
-                            {1, 0});
-    ImGui::SetNextWindowSize({350 * ui.scale, 0});
-    ImGui::Begin("solid", nullptr, note);
+    beginPicked(ui, "solid", 350);
     ImGui::TextColored(red, "%s", s.name.c_str());
     row("middle", "{} m", vec(s.position));
     row("velocity", "{} m/s", vec(s.velocity));
@@ -351,11 +364,7 @@ void pickedSolid(const Ui& ui) {
 void pickedParticle(Ui& ui) {
     if (!ui.picked) return;
     const Particle& p = *ui.picked;
-    const float edge = margin * ui.scale;
-    ImGui::SetNextWindowPos({float(ui.area.x + ui.area.width) - edge, edge}, ImGuiCond_Always,
-                            {1, 0});
-    ImGui::SetNextWindowSize({310 * ui.scale, 0});
-    ImGui::Begin("particle", nullptr, note);
+    beginPicked(ui, "particle", 310);
     ImGui::TextColored(red, "particle %d", p.id);
     row("position", "{:.4f}  {:.4f}  {:.4f} m", p.position.x, p.position.y, p.position.z);
     row("velocity", "{:.3f}  {:.3f}  {:.3f} m/s", p.velocity.x, p.velocity.y, p.velocity.z);

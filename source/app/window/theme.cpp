@@ -18,8 +18,9 @@ void setColors(ImGuiStyle& style) {
     const auto faded = [](ImVec4 color, float alpha) {
         return ImVec4{color.x, color.y, color.z, alpha};
     };
-    c[ImGuiCol_WindowBg] = {0.086f, 0.096f, 0.118f, 0.97f};
-    c[ImGuiCol_PopupBg] = {0.11f, 0.12f, 0.15f, 0.98f};
+    // Nothing shows through: there is no picture behind the panel, only the panel of before.
+    c[ImGuiCol_WindowBg] = {0.086f, 0.096f, 0.118f, 1};
+    c[ImGuiCol_PopupBg] = {0.11f, 0.12f, 0.15f, 1};
     c[ImGuiCol_Text] = {0.91f, 0.93f, 0.96f, 1};
     c[ImGuiCol_TextDisabled] = {0.60f, 0.64f, 0.70f, 1};
     c[ImGuiCol_Border] = {1, 1, 1, 0.06f};

@@ -254,7 +254,8 @@ void Ui::refreshPicked() {
 
 std::vector<Ring> Ui::rings() const {
     std::vector<Ring> marks;
-    if (drag == Drag::Stir) marks.push_back({stirCenter, stirRadius(), {1.0f, 0.85f, 0.4f}});
+    if (drag == Drag::Stir || (sizing && drag == Drag::None))
+        marks.push_back({stirCenter, stirRadius(), {1.0f, 0.85f, 0.4f}});
     if (drag == Drag::Solid)
         marks.push_back({stirCenter, 2 * player.scene.simulation.spacing, {1.0f, 0.85f, 0.4f}});
     for (const Particle& p : player.culprits)

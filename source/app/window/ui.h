@@ -56,6 +56,7 @@ struct Ui {
     Drag drag = Drag::None;
     float mouseX = 0, mouseY = 0;  // px within the area
     Vec3 stirCenter, stirBefore;   // m, relative to the domain's lower corner
+    bool sizing = false;           // the wheel has turned while Ctrl is held: its ring is shown
     bool grabWanted = false;       // if there is an obstacle at stirCenter
     Hold hold;  // of an obstacle that is dragged, its target seen from stirCenter
 

@@ -22,6 +22,7 @@ public:
             faces_.push_back(solid.floats() ? ballsOfAFace(flow.scene, solid) : 1);
         }
         loads_.resize(onHost_.size()), touches_.resize(onHost_.size()), also_.resize(1);
+        room_.resize(1);
         takeInHand(-1);
         if (solids.floats())
             bounces((flow.fluidCount + clusterSize - 1) / clusterSize * clusterSize);
@@ -86,7 +87,8 @@ public:
     }
     void addForces(Plan& plan, Initial initial) {
         plan.add(
-            "solid forces", [this] { findForces(); }, initial, solids_.whyNoneFloats());
+            "solid forces", [this] { findForces(); }, initial,
+            hold_.solid >= 0 ? "" : solids_.whyNoneFloats());
     }
     void move(Plan& plan, ShareOfStep share) {
         plan.add(
@@ -107,6 +109,9 @@ private:
     void findForces() {
         solids_.findLoads();
         const View v = flow_.view();
+        if (handMass_ > 0)
+            device_.reduce(v.walls.slots, solids_.sumOf(v, hold_.solid),
+                           loads_.data() + hold_.solid);
         forFloating([&](int s) {
             device_.reduce(v.walls.slots, solids_.sumOf(v, s), loads_.data() + s);
             device_.reduce(v.walls.slots, SumTouches{v, solids_.home(), bodies_.data(), s},
@@ -114,6 +119,10 @@ private:
         });
     }
     void moveBodies(ShareOfStep share) {
+        if (handMass_ > 0)
+            device_.reduce(flow_.walls.slots(),
+                           FindRoom{flow_.view(), solids_.home(), bodies_.data(), hold_.solid},
+                           room_.data());
         device_.forEach(solids_.count(), MoveFloating{flow_.view(),
                                                       bodies_.data(),
                                                       motions_.data(),
@@ -121,7 +130,7 @@ private:
                                                       touches_.data(),
                                                       double(particleMass(flow_.scene)),
                                                       hold_,
-                                                      {handMass_, stops_.data()},
+                                                      {handMass_, stops_.data(), room_.data()},
                                                       0.5 * share.halvesOfKick,
                                                       share.drifts ? 1.0 : 0.0});
     }
@@ -148,12 +157,24 @@ private:
     }
     // From now on the mouse holds this one, -1: none.
     void takeInHand(int solid) {
-        fill(stops_, std::vector<Stops>(1));
+        fill(stops_, std::vector<Stops>(1)), fill(loads_, std::vector<SolidLoad>(onHost_.size()));
         handMass_ = 0;
-        if (solid < 0) return;
-        Solid wet = flow_.scene.solids[size_t(solid)];
-        wet.density = flow_.scene.fluid.restDensity;
-        if (wet.shape != Shape::Plane) handMass_ = massOf(flow_.scene, wet).mass;
+        if (solid < 0 || flow_.scene.solids[size_t(solid)].floats()) return;
+        solids_.reserveLoads(flow_.walls.slots());
+        handMass_ = massInHand(flow_.scene, flow_.scene.solids[size_t(solid)]);
+    }
+    // Of fluid in its place, kg; thin ones take more along than that, planes all of it.
+    double massInHand(const Scene& scene, Solid solid) const {
+        if (solid.shape == Shape::Plane) return particleMass(scene) * flow_.fluidCount;
+        solid.density = scene.fluid.restDensity;
+        Vec3d side = 2.0 * halfExtent(solid);
+        if (scene.simulation.dimensions == 2) side.z = 0;
+        if (side.x < side.y) std::swap(side.x, side.y);
+        if (side.y < side.z) std::swap(side.y, side.z);
+        if (side.x < side.y) std::swap(side.x, side.y);
+        const double along =
+            scene.simulation.dimensions == 2 ? side.x * side.x : side.x * side.y * side.y;
+        return std::max(massOf(scene, solid).mass, 0.1 * double(solid.density) * along);
     }
     template <class T> void fill(Buffer<T, Device>& buffer, const std::vector<T>& host) {
         buffer.resize(host.size());
@@ -214,6 +235,7 @@ private:
     Buffer<Wrench, Device> touches_{device_}, also_{device_};
     double handMass_ = 0;                                        // kg
     Buffer<Stops, Device> stops_{device_};                       // of what the mouse holds
+    Buffer<Room, Device> room_{device_};                         // likewise
     Buffer<real, Device> change_{device_}, stoppedBy_{device_};  // of fluid, see Bounces
 };
 

@@ -153,17 +153,73 @@ struct TakeMomentum {
     }
 };
 
+// How much room a solid that the mouse drags has. The last layer of fluid at a wall has no way out
+// between that and what comes nearer, and would be crushed.
+struct FindRoom {
+    View v;
+    WallsAtHome home;
+    const RigidBody* bodies;
+    int solid;
+    static constexpr real time = real(0.05);  // s, for the rest of the way
+    HD void addTo(Room& sum, int i) const {
+        if (v.walls.id[i] < 0 || home.solidOf(v.walls.id[i]) != solid) return;
+        const SolidState& s = v.solids[solid];
+        const real spacing = bodies[solid].deepestBall / real(0.75);
+        Vector<real> own = load(home.position, v.walls.id[i] - home.firstId) - s.home, n{0, 0, 0};
+        const real left = max(-surface(s, own, n), real(0)) + spacing;
+        const Vector<real> arm = turned(s, own);
+        Room room;
+        const bool isPlane = s.planes == 1;  // which goes on behind the box
+        if (!isPlane) besideBox(room, s, arm, left);
+        for (int other = 0; other < v.solidCount; ++other)
+            if (other != solid && bodies[other].mass <= 0)
+                beside(room, v.solids[other], s, arm, left);
+        sum.add(room);
+    }
+    // One that turns on and on has to have room for all of its circle.
+    HD void besideBox(Room& room, const SolidState& s, Vector<real> arm, real left) const {
+        const real spin = squareRoot(dot(s.spin, s.spin));
+        const Vector<real> axis = spin > 0 ? (1 / spin) * s.spin : Vector<real>{0, 0, 0};
+        const Vector<real> along = spin > 0 ? dot(arm, axis) * axis : arm, circle = arm - along;
+        const real radius = squareRoot(dot(circle, circle));
+        auto side = [&](int k, real middle, real a, real tilt, real low, real high, real period) {
+            if (period > 0 || (k == 2 && v.c.dimensions == 2)) return;
+            const real reach = radius * squareRoot(max(1 - tilt * tilt, real(0)));
+            room.low[k] = middle + a - reach - low - left;
+            room.high[k] = high - middle - a - reach - left;
+        };
+        const StepParameters& c = v.c;
+        side(0, s.middle.x, along.x, axis.x, c.low.x, c.high.x, c.period.x);
+        side(1, s.middle.y, along.y, axis.y, c.low.y, c.high.y, c.period.y);
+        side(2, s.middle.z, along.z, axis.z, c.low.z, c.high.z, c.period.z);
+    }
+    HD void beside(Room& room, const SolidState& other, const SolidState& s, Vector<real> arm,
+                   real left) const {
+        Vector<real> n{0, 0, 0}, velocity{0, 0, 0};
+        const real seen = left + real(0.1) * v.c.soundSpeed * time;
+        const real depth = depthIn(v, other, s.middle + arm, seen, n, velocity);
+        if (depth <= 0) return;
+        const real free = max(seen - depth - left, real(0));
+        const real least = dot(velocity - cross(s.spin, arm), n) - free / time;
+        if (least > room.least)
+            room.least = least, room.away[0] = n.x, room.away[1] = n.y, room.away[2] = n.z;
+    }
+};
+
 // The mouse's hand on a solid that doesn't float: the mass of fluid in its place, kg, 0: nothing
-// stops it; and what it gave to objects in the last step.
+// stops it; what it gave to objects in the last step; and how much room it has.
 struct Hand {
     double mass;
     const Stops* stops;
+    const Room* room;
 };
 
 // v += F / m dt, x += v dt; the same of angular momentum and turn. A solid that the mouse holds
 // goes where it is wanted: one that floats by a damped spring, another one by itself, no faster
-// than a tenth of the speed of sound. Both hands are as strong. Objects that the solid runs into
-// slow it, as one body with those of their particles that it stops.
+// than a tenth of the speed of sound. Both hands are as strong. What fluid presses with beyond that
+// strength slows the solid, or fluid between it and a wall would be crushed until it bursts.
+// Objects that the solid runs into slow it, as one body with those of their particles that it
+// stops.
 struct MoveFloating {
     using Index = int;
     View v;
@@ -193,14 +249,18 @@ struct MoveFloating {
         m.place = wrapped(m.place + (drift * dt) * m.velocity);
         turnBy(m.turn, (drift * dt) * spinOf(body, m));
     }
+    // N
+    HD Vec3d fluidOn(int s) const {
+        const SolidLoad& load = loads[s];
+        auto sum = [&](int k) { return fluidMass * (load.pressure[k] + load.other[k]); };
+        return {sum(0), sum(1), sum(2)};
+    }
     HD Wrench wrenchOn(int s) const {
         const SolidLoad& load = loads[s];
         const SolidState& state = v.solids[s];
         const Vector<real> pull = bodyForce(v.c, gravityNow(v), state.centreOfMass),
                            out = state.middle - state.centreOfMass;
-        auto sum = [&](int k) { return fluidMass * (load.pressure[k] + load.other[k]); };
-        const Vec3d fluid{sum(0), sum(1), sum(2)},
-            torque{load.torque[0], load.torque[1], load.torque[2]};
+        const Vec3d fluid = fluidOn(s), torque{load.torque[0], load.torque[1], load.torque[2]};
         return {fluid + touches[s].force + bodies[s].mass * Vec3d{pull.x, pull.y, pull.z},
                 fluidMass * torque + cross(Vec3d{out.x, out.y, out.z}, fluid) + touches[s].torque};
     }
@@ -215,7 +275,7 @@ struct MoveFloating {
         w.torque = w.torque - rate * m.angularMomentum;
     }
     HD void drag(int s) const {
-        const double time = 0.05, fastest = 0.1 * double(v.c.soundSpeed),
+        const double time = double(FindRoom::time), fastest = 0.1 * double(v.c.soundSpeed),
                      dt = v.state->dt;  // s, m/s
         SolidMotion& m = motions[s];
         const Vec3d before = m.velocity;
@@ -233,19 +293,21 @@ struct MoveFloating {
         if (speed > fastest) speed = fastest;
         if (hand.mass > 0 && speed > stops) speed = stops;  // it has to be slowed down again
         m.velocity = (far > 0 ? speed / far : 0) * way;
-        if (hand.mass > 0) m.velocity = pushed(before, m.velocity);
+        if (hand.mass > 0)
+            m.velocity = hand.room->slowed(pushed(before, m.velocity, fluidOn(s)), time,
+                                           double(bodies[s].deepestBall) / 0.75);
         if (v.c.dimensions == 2) m.velocity.z = 0;
         const Vec3d change = (1 / (kick * dt)) * (m.velocity - before);
         m.acceleration = m.acceleration + 0.25 * (change - m.acceleration);
         m.place = m.place + (drift * dt) * m.velocity;
     }
-    // From one velocity towards another, against the objects in its way.
-    HD Vec3d pushed(Vec3d before, Vec3d wanted) const {
+    // From one velocity towards another, against the fluid, N, and the objects in its way.
+    HD Vec3d pushed(Vec3d before, Vec3d wanted, Vec3d fluid) const {
         const double* given = hand.stops->momentum;
         const double all = hand.mass + hand.stops->mass,
                      most = strongest * hand.mass / all * kick * v.state->dt;
-        const Vec3d slowed = before - (kick / all) * Vec3d{given[0], given[1], given[2]},
-                    change = wanted - slowed;
+        const Vec3d lost = Vec3d{given[0], given[1], given[2]} - v.state->dt * fluid,
+                    slowed = before - (kick / all) * lost, change = wanted - slowed;
         const double size = sqrt(dot(change, change));
         return slowed + (size > most ? most / size : 1.0) * change;
     }

@@ -62,6 +62,36 @@ struct Stops {
     }
 };
 
+// How far a solid in the mouse's hand may go until one spacing is left to the box, m, and how fast
+// it at least has to go away from the other solid that is nearest: its speed along `away`, m/s.
+struct Room {
+    real low[3] = {1e30, 1e30, 1e30}, high[3] = {1e30, 1e30, 1e30};
+    real least = -1e30, away[3] = {0, 0, 0};
+    HD_OUT void add(const Room& o) {
+        for (int k = 0; k < 3; ++k) {
+            low[k] = o.low[k] < low[k] ? o.low[k] : low[k];
+            high[k] = o.high[k] < high[k] ? o.high[k] : high[k];
+        }
+        if (!(o.least > least)) return;
+        least = o.least;
+        for (int k = 0; k < 3; ++k) away[k] = o.away[k];
+    }
+    // What is left of a velocity where the rest of the way takes `time`. Where it reaches through a
+    // side of the box no fluid is between.
+    HD Vec3d slowed(Vec3d u, double time, double spacing) const {
+        auto fastest = [&](double way) {
+            return way > 0 ? way / time : way < -2 * spacing ? 1e30 : 0.0;
+        };
+        for (int k = 0; k < 3; ++k) {
+            const double down = fastest(low[k]), up = fastest(high[k]);
+            u[k] = u[k] < -down ? -down : u[k] > up ? up : u[k];
+        }
+        const Vec3d n{away[0], away[1], away[2]};
+        const double lacks = least - dot(u, n);
+        return lacks > 0 ? u + lacks * n : u;
+    }
+};
+
 // The quaternion of a small turn, radians, after another one; of length 1.
 HD inline void turnBy(double (&q)[4], Vec3d angle) {
     const double size = sqrt(dot(angle, angle)), half = 0.5 * size,

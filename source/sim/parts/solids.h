@@ -217,6 +217,12 @@ public:
         for (int s = 0; s < count_; ++s)
             if (flow_.scene.solids[size_t(s)].floats()) pressFromGaps(v, s);
     }
+    // A recorded step can't make room.
+    void reserveLoads(int slots) {
+        for (auto* field : {&pressureLoad_, &otherLoad_, &seen_, &seenAtRest_})
+            field->resize(vectorSize(slots));
+        gap_.resize(1), around_.resize(1);
+    }
     SumSolidLoad sumOf(const View& v, int solid) {
         return {v, {pressureLoad_.data()}, {otherLoad_.data()}, home(), solid};
     }
@@ -310,12 +316,6 @@ private:
         device_.reduce(v.walls.slots, FindGap{beside}, gap_.data());
         device_.reduce(v.walls.slots, FindPressureAround{beside, gap_.data()}, around_.data());
         device_.forEach(v.walls.slots, PressFromGaps{beside, gap_.data(), around_.data()});
-    }
-    // A recorded step can't make room.
-    void reserveLoads(int slots) {
-        for (auto* field : {&pressureLoad_, &otherLoad_, &seen_, &seenAtRest_})
-            field->resize(vectorSize(slots));
-        gap_.resize(1), around_.resize(1);
     }
     void moveTo(double stepsBack, double ahead) {
         device_.forEach(count_, MoveSolids{states_.data(), keys_.data(), flow_.clock.data(),

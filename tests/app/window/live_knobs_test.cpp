@@ -9,6 +9,7 @@
 #include "sim/simulation.h"
 
 #include <gtest/gtest.h>
+#include <imgui.h>
 
 namespace spindrift {
 namespace {
@@ -103,6 +104,24 @@ TEST(IdleKnobs, ChangeNothing) {
                 });
             EXPECT_GT(idle, 5);
         }
+}
+
+TEST(IdleKnobs, OfTheViewGoByWhatIsShown) {
+    Scene scene;
+    for (const ColorBy by : {ColorBy::Plain, ColorBy::Fluid, ColorBy::Surface, ColorBy::Velocity}) {
+        scene.view.colorBy = by;
+        for (const char* path : {"view.range", "view.color_map"})
+            EXPECT_EQ(whyIdle(scene, path).empty(), by == ColorBy::Velocity) << path << int(by);
+    }
+}
+
+// The panel is drawn over the one before.
+TEST(Panel, LetsNothingShowThrough) {
+    ImGui::CreateContext();
+    setUpPanel(1);
+    for (const int background : {ImGuiCol_WindowBg, ImGuiCol_PopupBg})
+        EXPECT_EQ(ImGui::GetStyle().Colors[background].w, 1);
+    ImGui::DestroyContext();
 }
 
 TEST(Escape, ClosesOneThingAfterTheOther) {

@@ -145,6 +145,18 @@ TEST_F(WindowTest, DoubleClickMarksAParticleAndCtrlDragStirs) {
     EXPECT_TRUE(window.running());
 }
 
+TEST_F(WindowTest, CtrlWheelShowsHowFarAroundItStirs) {
+    Window window = paused();
+    const Image before = settled(window);
+    window.act("keydown ctrl " + window.at(470, 330) + "click 4 sleep 0.3");
+    const Image small = window.screenshot();
+    EXPECT_GT(difference(before, small), 5e-4);
+    window.act("click --repeat 5 4 sleep 0.3");
+    EXPECT_GT(difference(small, window.screenshot()), 5e-4) << "it grows";
+    window.act("keyup ctrl sleep 0.3");
+    EXPECT_LT(difference(before, settled(window)), 1e-4) << "it goes with the key";
+}
+
 // A ball in the middle of an otherwise calm scene goes with the mouse, one that stands still and
 // one that floats; beside it there is nothing to be dragged.
 TEST_F(WindowTest, CtrlDragPullsAnObstacle) {

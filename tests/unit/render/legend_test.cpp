@@ -26,6 +26,18 @@ TEST(Legend, EmptyOrEndlessRangesHaveOneTick) {
     EXPECT_EQ(ticks(0, std::numeric_limits<double>::quiet_NaN(), 5).size(), 1u);
 }
 
+// A tank in free fall: all have the same speed, which is not zero.
+TEST(Legend, OneValueHasOneLabelAtTheLowEnd) {
+    const auto widthOf = [](std::string_view text) { return 8 * float(text.size()); };
+    for (const auto& [value, label] :
+         {std::pair{0.0, "0"}, {0.0245, "0.0245"}, {1000.0, "1000"}, {-2e-5, "-2e-05"}}) {
+        const std::vector<Mark> marks = fittingMarks(value, value, 270, 16, widthOf);
+        ASSERT_EQ(marks.size(), 1u) << value;
+        EXPECT_EQ(marks[0].label, label);
+        EXPECT_EQ(marks[0].at, 0);
+    }
+}
+
 TEST(Legend, LabelsTellNeighboursApart) {
     EXPECT_EQ(tickLabel(0, 1), "0");
     EXPECT_EQ(tickLabel(1000, 0.5), "1000.0");
@@ -38,8 +50,8 @@ TEST(Legend, LabelsTellNeighboursApart) {
 // and tell their values apart.
 TEST(Legend, LabelsNeverOverlap) {
     const auto widthOf = [](std::string_view text) { return 8 * float(text.size()); };
-    for (double from : {0.0, -1.0, 998.0, 1e6, -3e7, 1e-7})
-        for (double span : {1e-5, 3e-3, 0.07, 1.0, 6.5, 440.0, 3e4, 7e9})
+    for (double from : {0.0, -1.0, 998.0, 1e6, -3e7, 1e-7, 0.0245})
+        for (double span : {3e-7, 1e-5, 3e-3, 0.07, 1.0, 6.5, 440.0, 3e4, 7e9})
             for (float bar : {60.0f, 120.0f, 270.0f, 900.0f}) {
                 if (span < 1e-6 * std::abs(from)) continue;  // what floats can't tell apart
                 const std::vector<Mark> marks = fittingMarks(from, from + span, bar, 16, widthOf);
