@@ -66,7 +66,8 @@ inline bool goesTogether(const Method& m, int dimensions) {
         s.walls.kind == WallKind::Reflect)
         return false;
     if (f == Formulation::Incompressible)
-        return i == Integrator::SymplecticEuler && s.time.mode != TimeMode::Local;
+        return i == Integrator::SymplecticEuler && s.time.mode != TimeMode::Local &&
+               s.simulation.kernel != Kernel::Mueller;
     if (f != Formulation::Classic) return true;
     return dimensions == 3 && s.simulation.kernel == Kernel::CubicSpline &&
            i == Integrator::SymplecticEuler;

@@ -6,6 +6,7 @@
 #include "app/error_bench.h"
 #include "app/frame_bench.h"
 #include "app/local_bench.h"
+#include "app/real_time_bench.h"
 #include "app/explain.h"
 #include "app/headless.h"
 #include "app/scene_choice.h"
@@ -235,12 +236,14 @@ CLI::App* addCompare(CLI::App& app, CompareOptions& options) {
 struct BenchChoice {
     BenchOptions steps;
     ErrorBenchOptions error;
-    bool byError = false, byLocalSteps = false, byFrames = false, byCeilings = false;
+    bool byError = false, byLocalSteps = false, byFrames = false, byCeilings = false,
+         byRealTime = false;
 };
 
 int runBench(const BenchChoice& choice) {
     if (choice.byFrames) return benchFrames();
     if (choice.byCeilings) return benchCeilings();
+    if (choice.byRealTime) return benchRealTime(choice.steps.only);
     if (choice.byLocalSteps) return benchLocalSteps({choice.steps.only, choice.error.out});
     return choice.byError ? benchError(choice.error) : bench(choice.steps);
 }
@@ -272,6 +275,9 @@ CLI::App* addBench(CLI::App& app, BenchChoice& choice) {
                       "local steps against the step of all instead; an hour");
     command->add_flag("--frames", choice.byFrames,
                       "pictures of up to 200 thousand particles instead, drawn off screen");
+    command->add_flag("--real-time", choice.byRealTime,
+                      "simulated time per time of the shipped scenes instead, as they are and "
+                      "incompressible; six minutes");
     command->add_flag(
         "--ceilings", choice.byCeilings,
         "what the passes make of the machine's arithmetic and memory instead; a minute");

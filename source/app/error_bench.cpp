@@ -52,7 +52,8 @@ std::vector<Variant> methods() {
     for (const auto& [name, knob] : {std::pair{"wcsph", "wcsph"},
                                      {"delta", "delta_sph"},
                                      {"delta+", "delta_plus"},
-                                     {"transport", "transport_velocity"}})
+                                     {"transport", "transport_velocity"},
+                                     {"solved", "incompressible"}})
         formulations.push_back({name, {{"simulation.formulation", knob}}});
     constexpr struct {
         const char *letters, *knob, *support;

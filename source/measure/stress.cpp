@@ -17,9 +17,9 @@ namespace spindrift {
 namespace {
 
 // What compressed fluid gives back, J: of p = k ((rho/rho0)^gamma - 1), where that is not cut off
-// at 0. The classic formulation's pressure has none.
+// at 0. The classic formulation's pressure has none, nor have pressures that are solved for.
 double internalEnergy(const Scene& scene, double sound, Simulation& simulation) {
-    if (factsOf(scene).isHistorical) return 0;
+    if (factsOf(scene).isHistorical || factsOf(scene).solvesPressure) return 0;
     const int gamma =
         scene.fluid.equationOfState == EquationOfState::Linear ? 1 : scene.fluid.gamma;
     const std::vector<uint16_t> bodies = simulation.state().particles.bodies;
@@ -231,7 +231,8 @@ StressCase boxCase(const std::string& formulation, const std::vector<std::string
 
 std::vector<StressCase> tortures(bool full) {
     std::vector<StressCase> out;
-    for (const char* f : {"wcsph", "delta_sph", "delta_plus"}) addViolent(f, TimeMode::Cfl, out);
+    for (const char* f : {"wcsph", "delta_sph", "delta_plus", "incompressible"})
+        addViolent(f, TimeMode::Cfl, out);
     for (const char* f : {"wcsph", "delta_sph"}) addViolent(f, TimeMode::Local, out);
     const std::vector<std::string> tv{
         "simulation.dimensions=2",
@@ -444,6 +445,17 @@ bool turnThings(Scene& s, uint64_t seed) {
     return false;
 }
 
+// One in five of those that may be is incompressible.
+void turnIncompressible(Scene& s, uint64_t seed) {
+    Dice dice{std::mt19937_64(seed + 0x94d049bb133111ebu)};
+    if (!dice.oneIn(5)) return;
+    const Formulation before = s.simulation.formulation;
+    s.simulation.formulation = Formulation::Incompressible;
+    try {
+        checkScene(s, s.name);
+    } catch (const Error&) { s.simulation.formulation = before; }
+}
+
 }  // namespace
 
 StressCase randomCase(uint64_t seed) {
@@ -505,6 +517,7 @@ StressCase randomCase(uint64_t seed) {
         turnLocal(s, seed);
         const bool fluidsKeepEnergy = turnFluids(s, seed),
                    keepsEnergy = !turnThings(s, seed) && fluidsKeepEnergy;
+        turnIncompressible(s, seed);
         try {
             checkScene(s, s.name);
         } catch (const Error&) { continue; }  // makes no sense: the next throw of the dice

@@ -32,6 +32,20 @@ void checkClassic(const Scene& scene) {
                "that, or simulation.formulation wcsph");
 }
 
+void checkIncompressible(const Scene& scene) {
+    if (scene.time.integrator != Integrator::SymplecticEuler)
+        refuse("time.integrator",
+               "the incompressible formulation has one of its own; use symplectic_euler");
+    if (scene.time.mode == TimeMode::Local)
+        refuse("time.mode",
+               "the incompressible formulation has the same step everywhere; use cfl or fixed");
+    // What velocities change densities by follows from the kernel's gradient.
+    if (scene.simulation.kernel == Kernel::Mueller)
+        refuse("simulation.kernel",
+               "mueller's gradient is not that of its densities, which the incompressible "
+               "formulation keeps by it; use wendland_c2");
+}
+
 bool anyWallReflects(const Scene& scene) {
     bool anyWall = false;
     for (int k = 0; k < scene.simulation.dimensions; ++k) anyWall |= !scene.domain.periodic(k);
@@ -81,12 +95,7 @@ void checkMethods(const Scene& scene) {
     checkReflecting(scene);
     checkPressureForm(scene);
     checkViscosityForm(scene);
-    if (factsOf(scene).solvesPressure && integrator != Integrator::SymplecticEuler)
-        refuse("time.integrator",
-               "the incompressible formulation is stepped by symplectic_euler; use that");
-    if (factsOf(scene).solvesPressure && scene.time.mode == TimeMode::Local)
-        refuse("time.mode",
-               "the incompressible formulation has the same step everywhere; use cfl or fixed");
+    if (factsOf(scene).solvesPressure) checkIncompressible(scene);
     const auto floats = [](const Solid& s) { return s.floats(); };
     const bool several =
         isMultiFluid(scene) || std::any_of(scene.solids.begin(), scene.solids.end(), floats);

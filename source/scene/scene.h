@@ -239,7 +239,7 @@ struct TimeKnobs {
 struct Solver {
     float densityError = 0.001f;  // mean of what densities are too large by, share of rest density
     int iterations = 100;         // at most
-    float densityShare = 0.1f;    // of an error of density that a step takes out
+    float densityShare = 0.1f;    // of an error of density that a step of 0.4 h takes out
     float relaxation = 1;         // how far pressures go in an iteration, share of what is sure
 };
 

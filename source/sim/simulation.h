@@ -47,7 +47,8 @@ struct SolidPose {
 // What the incompressible formulation's pressures took in the last step.
 struct SolveReport {
     int iterations = 0;
-    double error = 0;      // mean growth of density, share of the rest density
+    double error = 0;      // of density in the step, mean, share of the rest density
+    double allowed = 0;    // with which iterations end
     int64_t failures = 0;  // steps of the run whose pressures were not found
 };
 

@@ -52,7 +52,7 @@ struct Particles {
     ScalarField mirrored;              // share of a particle's pressure that walls beside it have
     ScalarField lastPressure;          // as pressureOverRho2, an iteration ago
     ScalarField source, residual;      // share of rho0 that densities would grow by in the step,
-                                       // without pressures and with them
+                                       // without pressures, and what is left of it
     VectorField keptPosition;  // m, what the integrator keeps while forces are evaluated elsewhere;
                                // with solids, after the drift, where its way began
     VectorField keptVelocity;  // m/s

@@ -10,35 +10,31 @@ namespace spindrift::LANES {
 template <class Device> class PressureSolver {
 public:
     explicit PressureSolver(Flow<Device>& flow) : flow_(flow) {
-        error_.resize(1), momentum_.resize(1);
+        error_.resize(1), progress_.resize(1);
     }
 
-    // Mean growth of density in a step, relative to rho0. As a step takes out a share of what
-    // densities are too large by, they are too large by no more than what is asked for.
-    double allowed() const {
-        const Solver& asked = flow_.scene.solver;
-        return double(asked.densityError) * double(asked.densityShare);
+    void begin() {
+        flow_.device.forEach(
+            1, BeginSolve{flow_.view(), double(flow_.scene.solver.densityError), progress_.data()});
     }
-    void begin() { flow_.device.forEach(1, BeginSolve{flow_.clock.data(), momentum_.data()}); }
     void findError() {
         flow_.device.reduce(flow_.fluid.slots(), SumError{flow_.fluid.view()}, error_.data());
         flow_.device.forEach(1,
-                             ChooseMomentum{flow_.clock.data(), error_.data(), momentum_.data()});
+                             ChooseMomentum{flow_.clock.data(), error_.data(), progress_.data()});
     }
     // Asked after each iteration.
     bool isDone() {
         ++now_.iterations;
-        SolveError e;
-        flow_.device.download(&e, error_.data(), 1);
-        now_.error = e.count > 0 ? e.growth / e.count : 0;
-        const bool found = now_.error <= allowed();
-        if (!found && now_.iterations < flow_.scene.solver.iterations) return false;
-        now_.failures = last_.failures + !found;
+        SolveProgress p;
+        flow_.device.download(&p, progress_.data(), 1);
+        if (!p.isFound() && now_.iterations < flow_.scene.solver.iterations) return false;
+        now_.error = p.count > 0 ? p.error / p.count : 0, now_.allowed = p.allowed;
+        now_.failures = last_.failures + !p.isFound();
         last_ = now_, now_ = {};
         return true;
     }
     void shortenSteps() {
-        flow_.device.forEach(1, ShortenSteps{flow_.clock.data(), error_.data(), allowed()});
+        flow_.device.forEach(1, ShortenSteps{flow_.clock.data(), progress_.data()});
     }
     // Of the last step.
     SolveReport report() const { return last_; }
@@ -46,7 +42,7 @@ public:
 private:
     Flow<Device>& flow_;
     Buffer<SolveError, Device> error_{flow_.device};
-    Buffer<Momentum, Device> momentum_{flow_.device};
+    Buffer<SolveProgress, Device> progress_{flow_.device};
     SolveReport now_, last_;
 };
 

@@ -193,7 +193,7 @@ private:
     }
     void chooseStep() {
         const bool needed =
-            keepsLists || shiftsParticles(scene_) || flow_.parameters.fixedStep <= 0;
+            keepsLists || shiftsParticles(scene_) || solves() || flow_.parameters.fixedStep <= 0;
         plan_.add(
             "extremes",
             [&flow = flow_, parts = parts_] {
