@@ -97,6 +97,30 @@ TEST_P(Backends, OneStepFromTheSameStateAgreesToRounding) {
     EXPECT_GT(gpu->measure().time, state.clock.time);
 }
 
+// As many iterations lead to the same pressures.
+TEST(SolvedPressures, AgreeToRounding) {
+    NEED_GPU();
+    for (const char* name : {"test/dam_break_small.json", "test/floating_small.json"}) {
+        SCOPED_TRACE(name);
+        Scene scene = shippedScene(name);
+        scene.simulation.formulation = Formulation::Incompressible;
+        auto before = onCpu(scene, placeParticles(scene));
+        before->step(40);
+        const RunState state = before->state();
+        auto cpu = onCpu(scene, state), gpu = onGpu(scene, state);
+        cpu->step(), gpu->step();
+        const Difference d = difference(scene, *cpu, *gpu);
+        EXPECT_LT(d.position, 1e-5);
+        EXPECT_LT(d.density, 1e-5);
+        EXPECT_EQ(cpu->measure().solve.iterations, gpu->measure().solve.iterations);
+        EXPECT_NEAR(cpu->measure().kineticEnergy, gpu->measure().kineticEnergy,
+                    1e-4 * cpu->measure().kineticEnergy);
+        cpu->step(20), gpu->step(20);  // recorded ones
+        EXPECT_EQ(gpu->measure().solve.failures, cpu->measure().solve.failures);
+        EXPECT_NEAR(cpu->measure().centerOfMass.y, gpu->measure().centerOfMass.y, 1e-3);
+    }
+}
+
 // The most that runs which begin a rounding error apart differ by from this one after as many
 // steps.
 struct Scatter {
