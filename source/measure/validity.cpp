@@ -160,9 +160,10 @@ void Validity::look(const Measurement& m) {
     // The densities of the classic formulation are what its masses make of them.
     if (m.densityError > MostCompression && !isClassic_)
         remark(fmt::format("mean compression: {:.2g} % at {:.4g} s, above {:g} %; leave room for "
-                           "the fluid that is "
-                           "displaced, or raise fluid.speed_ratio (fluid.sound_speed)",
-                           100 * m.densityError, m.time, 100 * MostCompression),
+                           "the fluid that is displaced, or {}",
+                           100 * m.densityError, m.time, 100 * MostCompression,
+                           m.solvesPressure ? "lower solver.density_error or time.cfl"
+                                            : "raise fluid.speed_ratio (fluid.sound_speed)"),
                m.time);
     if (double(m.solve.failures) > 10 + 0.02 * double(m.steps))
         remark(fmt::format("pressures: not found in {} of {} steps, which were shortened; raise "

@@ -484,6 +484,10 @@ template <class S, class Visitor> void visitPhysics(S& s, Visitor&& visit) {
           Knob{"", 0, 0.1f,
                "local: slower than this share of the speed of sound, fluid may fall asleep; 0 = "
                "never"});
+    visit("time.retries", s.time.retries,
+          Knob{"", 0, 8,
+               "how often a run in trouble goes back to its last good state and on with half the "
+               "step"});
     visit("solver.density_error", s.solver.densityError,
           Knob{"", 1e-6f, 0.1f,
                "incompressible: pressures are good enough when densities are too large by less, in "
@@ -496,10 +500,6 @@ template <class S, class Visitor> void visitPhysics(S& s, Visitor&& visit) {
           Knob{"", 0.05f, 1.5f,
                "incompressible: how far pressures go in an iteration, share of what a lattice of "
                "particles is sure to bear"});
-    visit("time.retries", s.time.retries,
-          Knob{"", 0, 8,
-               "how often a run in trouble goes back to its last good state and on with half the "
-               "step"});
 }
 
 template <class S, class Visitor> void visitFluid(S& s, Visitor&& visit) {

@@ -85,10 +85,9 @@ template <class Kernel> struct ComputeWallMass {
     }
 };
 
-// Density and what follows from it: the equation of state p = max(p_least, p0 + k ((rho/rho0)^gamma
-// - 1)). A sum over few neighbours says little of the fluid's density: 1/rho, which viscous forces
-// go with twice, is never more than 1.25/rho0. (Without that, single drops at walls were seen to
-// blow up in thick fluid.)
+// A sum over few neighbours says little of the fluid's density: 1/rho, which viscous forces go with
+// twice, is never more than 1.25/rho0. (Without that, single drops at walls were seen to blow up in
+// thick fluid.) Returns 1/rho.
 template <class I> HD inline Real<I> storeDensity(const View& v, I i, Real<I> rho) {
     using R = Real<I>;
     const R inverse = R(1) / max(rho, R(real(0.8) * v.c.restDensity));
@@ -96,6 +95,8 @@ template <class I> HD inline Real<I> storeDensity(const View& v, I i, Real<I> rh
     store(v.fluid.inverseDensity, i, inverse);
     return inverse;
 }
+// What follows from a density: the equation of state p = max(p_least, p0 + k ((rho/rho0)^gamma -
+// 1)).
 template <class I> HD inline void storeState(const View& v, I i, Real<I> rho) {
     using R = Real<I>;
     const R ratio = rho * R(1 / v.c.restDensity);
