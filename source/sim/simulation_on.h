@@ -157,19 +157,18 @@ private:
         const bool halfListsBefore = flow_.usesHalfLists();
         flow_.scene = scene;
         if (flow_.usesHalfLists() != halfListsBefore) flow_.search.outdate();
-        withKernel(scene.simulation.kernel, [&](auto kernel) {
-            using K = decltype(kernel);
-            StepParameters& c = flow_.parameters;
-            c = makeStepParameters<K>(flow_.scene, flow_.extent);
-            forEachPart(parts(), [&](auto& part) { part.refresh(); });
-            forEachPart(parts(),
-                        [&](auto& part) { c.maxStep = min(c.maxStep, real(part.longestStep())); });
-            const double step = flow_.longestStep();
-            forEachPart(parts(), [&](auto& part) { part.knowLongestStep(step); });
-            flow_.addBuffers();
-            flow_.fluid.weighViscosity(!*whyViscosityIsNotWeighed(flow_));
-            runner_.take(
-                StepMaker<Device, K, decltype(parts())>(flow_, blocks_, solver_, parts()).plan());
+        StepParameters& c = flow_.parameters;
+        c = makeStepParameters(flow_.scene, flow_.extent);
+        forEachPart(parts(), [&](auto& part) { part.refresh(); });
+        forEachPart(parts(),
+                    [&](auto& part) { c.maxStep = min(c.maxStep, real(part.longestStep())); });
+        const double step = flow_.longestStep();
+        forEachPart(parts(), [&](auto& part) { part.knowLongestStep(step); });
+        flow_.addBuffers();
+        flow_.fluid.weighViscosity(!*whyViscosityIsNotWeighed(flow_));
+        withCompiledKernel(scene.simulation.kernel, [&](auto kernel) {
+            using Maker = StepMaker<Device, decltype(kernel), decltype(parts())>;
+            runner_.take(Maker(flow_, blocks_, solver_, parts()).plan());
         });
     }
     void letSolidsMove() {

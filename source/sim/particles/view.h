@@ -8,6 +8,9 @@
 
 #include <cstdint>
 
+namespace spindrift {
+enum class Kernel;
+}
 namespace spindrift::LANES {
 
 // Particles of one kind, sorted by cell. A slot with id -1 holds none: it fills a row of cells up
@@ -161,6 +164,7 @@ struct Blocks {
 };
 
 struct StepParameters {
+    Kernel kernel;
     real support, support2, inverseSupport2;  // R, R^2, 1/R^2
     real kernelScale, gradientScale;          // m norm/R^3, m gradientNorm/R^5, m the mass in sums
     real selfWeight;                          // 1: a particle counts itself in its density; 0: not

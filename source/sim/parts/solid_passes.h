@@ -251,10 +251,10 @@ template <class Kernel, class... Terms> struct ComputeWallLoads<Kernel, TermList
         Vector<R> seen{0, 0, 0}, atRest{0, 0, 0};
         forNeighbours<Lists::All>(v, v.fluidNearWalls, b, x, [&](auto p, JCluster j) LANE_CALL {
             p.r = R(-1) * p.r;
-            const Vector<R> slope = Kernel::g(p.q) * p.r;
+            const Vector<R> slope = slopeOf<Kernel>(v.c, p.q) * p.r;
             seen = seen + slope, atRest = addScaled(atRest, dot(pull, p.r), slope);
             const PairInput<R> fluid = loadPairInput<needs>(v.fluid, j);
-            (Terms::addWall(v.c, p, weights<Kernel>(p.q), fluid, wall, a), ...);
+            (Terms::addWall(v.c, p, weights<Kernel>(v.c, p.q), fluid, wall, a), ...);
         });
         const R scale = -v.c.gradientScale;
         store(pressure, b, scale * total(a.pressure));

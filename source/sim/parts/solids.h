@@ -132,7 +132,7 @@ public:
     void weighWalls() {
         flow_.search.sortWalls(flow_.walls);
         flow_.search.amongWalls(flow_.walls, supportRadius(flow_.scene), [&] {
-            withKernel(flow_.scene.simulation.kernel, [&](auto kernel) {
+            withCompiledKernel(flow_.scene.simulation.kernel, [&](auto kernel) {
                 flow_.template onWalls<ComputeWallMass<decltype(kernel)>>();
             });
         });
@@ -148,7 +148,7 @@ public:
         if (letsSlip(scene)) flow_.walls.letSlip();
         if (!*whyFlowEndsAtWalls()) flow_.walls.continueFlow();
         const bool sticksNow = flow_.fluidSticks() && flow_.walls.carryVelocity();
-        withKernel(scene.simulation.kernel, [&](auto kernel) {
+        withCompiledKernel(scene.simulation.kernel, [&](auto kernel) {
             using K = decltype(kernel);
             findLoads_ = loadsBy<K>();
             continueFlow_ = &Flow<Device>::template onWalls<ContinueFlowIntoWalls<K>>;

@@ -6,6 +6,8 @@
 #include "core/lanes.h"
 #include "scene/scene.h"
 
+#include <type_traits>
+
 namespace spindrift::LANES {
 
 // Wendland 1995, C2: w = (1-q)^4 (1+4q), g = (1-q)^3.
@@ -117,7 +119,8 @@ struct MuellerKernel {
 };
 
 // What sums for Laplacians weigh differences with: (x.grad W) / d^2 as Morris 1997 does, hence g,
-// unless a kernel has its own. What a unit of it comes to is found on the lattice (constants.h).
+// unless a kernel has its own. What a unit of it comes to is found on the lattice
+// (step_parameters.h).
 template <class Kernel, class R> HD inline R viscous(R q) {
     if constexpr (requires { Kernel::viscous(q); })
         return Kernel::viscous(q);
@@ -128,8 +131,11 @@ template <class Kernel, class R> HD inline R viscous(R q) {
 // Of means that are the same whichever kernel a scene has.
 using MeanKernel = WendlandC2Kernel;
 
-// Calls f with the kernel of that name.
-template <class F> auto withKernel(Kernel kernel, F f) {
+// Calls f with the kernel of that name; on a GPU f must be of the GPU, which nvcc can't tell.
+#ifdef __CUDACC__
+#pragma nv_exec_check_disable
+#endif
+template <class F> HD inline auto withKernel(Kernel kernel, F f) {
     switch (kernel) {
         case Kernel::CubicSpline:
             return f(CubicSplineKernel{});
@@ -145,6 +151,37 @@ template <class F> auto withKernel(Kernel kernel, F f) {
             break;
     }
     return f(WendlandC2Kernel{});
+}
+
+// --- in passes: kernels that are compiled ---
+
+// Stands for the kernel that StepParameters name, which costs a branch that always goes the same
+// way. Passes are compiled for it and for Wendland's C2, which most scenes have: passes for each of
+// six kernels took three times as long to compile.
+struct NamedKernel {};
+
+template <class K, class C, class R> HD inline R valueOf(const C& c, R q) {
+    if constexpr (std::is_same_v<K, NamedKernel>)
+        return withKernel(c.kernel, [q](auto kernel) LANE_CALL { return decltype(kernel)::w(q); });
+    else
+        return K::w(q);
+}
+template <class K, class C, class R> HD inline R slopeOf(const C& c, R q) {
+    if constexpr (std::is_same_v<K, NamedKernel>)
+        return withKernel(c.kernel, [q](auto kernel) LANE_CALL { return decltype(kernel)::g(q); });
+    else
+        return K::g(q);
+}
+template <class K, class C, class R> HD inline R viscousOf(const C& c, R q) {
+    if constexpr (std::is_same_v<K, NamedKernel>)
+        return withKernel(c.kernel,
+                          [q](auto kernel) LANE_CALL { return viscous<decltype(kernel)>(q); });
+    else
+        return viscous<K>(q);
+}
+
+template <class F> auto withCompiledKernel(Kernel kernel, F f) {
+    return kernel == Kernel::WendlandC2 ? f(WendlandC2Kernel{}) : f(NamedKernel{});
 }
 
 }  // namespace spindrift::LANES

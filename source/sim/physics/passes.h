@@ -75,8 +75,8 @@ template <class Kernel> struct ComputeWallMass {
         Real<ICluster> sum = 0;
         forNeighbours<Lists::All>(v, v.wallsNearWalls, i, load(v.walls.position, i),
                                   [&](const auto& p, JCluster)
-                                      LANE_CALL { sum += Kernel::w(p.q); });
-        const real alone = Kernel::w(real(0));
+                                      LANE_CALL { sum += valueOf<Kernel>(v.c, p.q); });
+        const real alone = valueOf<Kernel>(v.c, real(0));
         const Real<ICluster> near = max(total(sum) + Real<ICluster>((v.c.selfWeight - 1) * alone),
                                         Real<ICluster>(real(0.01) * alone));
         const Real<ICluster> mass =
@@ -117,16 +117,17 @@ template <class Kernel, bool solved = false> struct ComputeDensity {
         if (!isActive<activeFrom>(v.fluid, i)) return;
         const Vector<R> x = load(v.fluid.position, i);
         R fluid = 0;
-        forNeighbours<lists>(v, v.fluidNearFluid, i, x,
-                             [&](const auto& p, JCluster) LANE_CALL { fluid += Kernel::w(p.q); });
+        forNeighbours<lists>(v, v.fluidNearFluid, i, x, [&](const auto& p, JCluster) LANE_CALL {
+            fluid += valueOf<Kernel>(v.c, p.q);
+        });
         finish(i, x, total(fluid));
     }
     HD void finish(ICluster i, Vector<R> x, R fluid) const {
         R walls = 0;
         forNeighbours<lists>(v, v.wallsNearFluid, i, x, [&](const auto& p, JCluster j) LANE_CALL {
-            walls = mulAdd(load(v.walls.mass, j), Kernel::w(p.q), walls);
+            walls = mulAdd(load(v.walls.mass, j), valueOf<Kernel>(v.c, p.q), walls);
         });
-        const R others = fluid + R((v.c.selfWeight - 1) * Kernel::w(real(0)));
+        const R others = fluid + R((v.c.selfWeight - 1) * valueOf<Kernel>(v.c, real(0)));
         const R rho = R(v.c.kernelScale) * (others + total(walls));
         if constexpr (solved)
             storeDensity(v, i, rho);
@@ -140,7 +141,7 @@ template <class Kernel, bool solved = false> struct ComputeDensity {
     struct Nothing {};
     ScalarField field() const { return v.fluid.density; }
     template <class I> HD Nothing input(I) const { return {}; }
-    HD R of(const Pair<R>& p, Nothing, Nothing) const { return Kernel::w(p.q); }
+    HD R of(const Pair<R>& p, Nothing, Nothing) const { return valueOf<Kernel>(v.c, p.q); }
     HD void finish(ICluster i) const { finish(i, load(v.fluid.position, i), load(field(), i)); }
 };
 
@@ -185,7 +186,7 @@ template <class Kernel, bool sticks, bool dense> struct ExtrapolateToWalls {
         Vector<R> velocity{0, 0, 0};
         forNeighbours<Lists::All>(
             v, v.fluidNearWalls, b, x, [&](const auto& p, JCluster j) LANE_CALL {
-                const R rho = load(v.fluid.density, j), w = Kernel::w(p.q);
+                const R rho = load(v.fluid.density, j), w = valueOf<Kernel>(v.c, p.q);
                 const R pull = v.fluid.massRatio.data ? load(v.fluid.massRatio, j) * dot(force, p.r)
                                                       : dot(force, p.r);
                 pressure =
@@ -249,7 +250,7 @@ template <class Kernel> struct ContinueFlowIntoWalls {
         Vector<R> velocity{0, 0, 0}, towards{0, 0, 0};
         forNeighbours<Lists::All>(v, v.fluidNearWalls, b, load(v.walls.position, b),
                                   [&](const auto& p, JCluster j) LANE_CALL {
-                                      const R w = Kernel::w(p.q);
+                                      const R w = valueOf<Kernel>(v.c, p.q);
                                       weight += w;
                                       velocity = addScaled(velocity, w, load(v.fluid.velocity, j));
                                       towards = addScaled(towards, w, p.r);
@@ -287,9 +288,9 @@ template <class Kernel, Lists which> struct WeighViscosity {
                              [&](const auto& p, JCluster) LANE_CALL { fluid += weight(p.q); });
         finish(i, x, total(fluid));
     }
-    HD static R weight(R q) {
+    HD R weight(R q) const {
         const R q2 = q * q;
-        return q2 * q2 * viscous<Kernel>(q);
+        return q2 * q2 * viscousOf<Kernel>(v.c, q);
     }
     HD void finish(ICluster i, Vector<R> x, R fluid) const {
         R walls = 0;
@@ -365,7 +366,7 @@ struct ComputeForces<Kernel, which, TermList<Terms...>, role> {
     template <class I> HD PairInput<R> input(I i) const { return loadPairInput<needs>(v.fluid, i); }
     template <class A>
     HD void add(const Pair<R>& p, const PairInput<R>& own, const PairInput<R>& other, A& a) const {
-        const Weights<R> k = weights<Kernel>(p.q);
+        const Weights<R> k = weights<Kernel>(v.c, p.q);
         (Terms::add(v.c, p, k, own, other, a), ...);
     }
     // `a`: lane by lane, `whole`: the same for all of a particle's lanes.
@@ -373,7 +374,7 @@ struct ComputeForces<Kernel, which, TermList<Terms...>, role> {
                    Vector<R> whole) const {
         const Vector<real> gravity = gravityNow(v);
         forNeighbours<lists>(v, v.wallsNearFluid, i, x, [&](const auto& p, JCluster j) LANE_CALL {
-            (Terms::addWall(v.c, p, weights<Kernel>(p.q), own, loadWall<needs>(v.walls, j), a),
+            (Terms::addWall(v.c, p, weights<Kernel>(v.c, p.q), own, loadWall<needs>(v.walls, j), a),
              ...);
         });
         const R scale = v.fluid.massRatio.data ? R(v.c.gradientScale) / load(v.fluid.massRatio, i)
@@ -450,14 +451,14 @@ template <class Kernel> struct ComputeDensityRate {
                 const Vector<R> apart = u - load(v.fluid.velocity, j);
                 const R approach = rho * dot(apart, addScaled(p.r, ahead, apart));
                 const R excess = load(v.fluid.density, j) - rho + dot(slope, p.r);
-                sum = mulAdd(Kernel::g(p.q) * load(v.fluid.inverseDensity, j),
+                sum = mulAdd(slopeOf<Kernel>(v.c, p.q) * load(v.fluid.inverseDensity, j),
                              negMulAdd(diffusion, excess, approach), sum);
             });
         R walls = 0;
         forNeighbours<Lists::Inner>(
             v, v.wallsNearFluid, i, x, [&](const auto& p, JCluster j) LANE_CALL {
                 const Vector<R> apart = u - flowVelocity(v.walls, j);
-                walls = mulAdd(Kernel::g(p.q) * load(v.walls.mass, j),
+                walls = mulAdd(slopeOf<Kernel>(v.c, p.q) * load(v.walls.mass, j),
                                dot(apart, addScaled(p.r, ahead, apart)), walls);
             });
         const R perRest = 1 / v.c.restDensity;
@@ -508,21 +509,21 @@ template <class Kernel, bool surface> struct ComputeTransport {
         forNeighbours<Lists::Inner>(
             v, v.fluidNearFluid, i, x, [&](const auto& p, JCluster j) LANE_CALL {
                 const R more = load(v.fluid.density, j) - rho;
-                s.add(Kernel::g(p.q) * load(v.fluid.inverseDensity, j), p.r,
+                s.add(slopeOf<Kernel>(v.c, p.q) * load(v.fluid.inverseDensity, j), p.r,
                       load(v.fluid.velocity, j) - own, more,
                       surface ? more + dot(slope, p.r) : more, crowding(p.q));
             });
         forNeighbours<Lists::Inner>(
             v, v.wallsNearFluid, i, x, [&](const auto& p, JCluster j) LANE_CALL {
                 const R more = load(v.walls.density, j) - rho;
-                s.add(Kernel::g(p.q) * load(v.walls.mass, j) * perRest, p.r,
+                s.add(slopeOf<Kernel>(v.c, p.q) * load(v.walls.mass, j) * perRest, p.r,
                       flowVelocity(v.walls, j) - own, more, surface ? R(0) : more, crowding(p.q));
             });
         finish(i, rho, s);
     }
     // Sun 2019: 1 + 0.2 (W / W(dx))^4 keeps particles from pairing.
     HD R crowding(R q) const {
-        const R w = Kernel::w(q) * R(v.c.shiftWeight), w2 = w * w;
+        const R w = valueOf<Kernel>(v.c, q) * R(v.c.shiftWeight), w2 = w * w;
         return mulAdd(R(real(0.2)), w2 * w2, R(1));
     }
     HD void finish(ICluster i, R rho, const Sums& s) const {

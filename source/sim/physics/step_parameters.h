@@ -219,6 +219,7 @@ StepParameters makeStepParameters(const Scene& s, const FluidExtent& fluid) {
     const double R = supportRadius(s), h = R / 2, rho0 = s.fluid.restDensity;
     const bool linear = s.fluid.equationOfState == EquationOfState::Linear;
     StepParameters c{};
+    c.kernel = s.simulation.kernel;
     c.support = real(R), c.support2 = real(R * R), c.inverseSupport2 = real(1 / (R * R));
     c.restDensity = real(rho0);
     // On its lattice a linear pressure has its exact gradient and a parabolic velocity its exact
@@ -301,6 +302,11 @@ StepParameters makeStepParameters(const Scene& s, const FluidExtent& fluid) {
     c.cfl = s.time.cfl, c.maxStep = real(longest), c.restSpeed = s.time.restSpeed;
     c.fixedStep = s.time.mode == TimeMode::Fixed ? real(s.time.step) : real(0);
     return c;
+}
+
+inline StepParameters makeStepParameters(const Scene& s, const FluidExtent& fluid) {
+    return withKernel(s.simulation.kernel,
+                      [&](auto kernel) { return makeStepParameters<decltype(kernel)>(s, fluid); });
 }
 
 // Rows two spacings wide, cells half a spacing long; larger when the box is so empty that cells

@@ -13,7 +13,6 @@ namespace spindrift::LANES {
 // theta) / 2, for surfaces whose tensions are as their steps in colour meet at the angle theta.
 // Drops with theta = 60, 90 and 120 degrees all drew up and left the wall.)
 struct ComputeNormals {
-    using Kernel = MeanKernel;
     using Index = ICluster;
     using R = Real<ICluster>;
     View v;
@@ -21,14 +20,14 @@ struct ComputeNormals {
         Vector<R> sum{0, 0, 0};
         const Vector<R> x = load(v.fluid.position, i);
         forNeighbours<lists>(v, v.fluidNearFluid, i, x, [&](const auto& p, JCluster) LANE_CALL {
-            sum = addScaled(sum, Kernel::g(p.q), p.r);
+            sum = addScaled(sum, MeanKernel::g(p.q), p.r);
         });
         finish(i, x, total(sum));
     }
     HD void finish(ICluster i, Vector<R> x, Vector<R> fluid) const {
         Vector<R> walls{0, 0, 0};
         forNeighbours<lists>(v, v.wallsNearFluid, i, x, [&](const auto& p, JCluster j) LANE_CALL {
-            walls = addScaled(walls, load(v.walls.mass, j) * Kernel::g(p.q), p.r);
+            walls = addScaled(walls, load(v.walls.mass, j) * MeanKernel::g(p.q), p.r);
         });
         const Vector<R> n = R(v.c.normalScale) * (fluid + total(walls));
         const R length = squareRoot(dot(n, n)), least = v.c.leastNormal, zero = 0;
@@ -42,7 +41,7 @@ struct ComputeNormals {
     struct Nothing {};
     HD VectorField field() const { return v.fluid.normal; }
     template <class I> HD Nothing input(I) const { return {}; }
-    HD Vector<R> of(const Pair<R>& p, Nothing, Nothing) const { return Kernel::g(p.q) * p.r; }
+    HD Vector<R> of(const Pair<R>& p, Nothing, Nothing) const { return MeanKernel::g(p.q) * p.r; }
     HD void finish(ICluster i) const { finish(i, load(v.fluid.position, i), load(field(), i)); }
 };
 
@@ -63,14 +62,13 @@ struct TagSurface {
 // in a corner of a block is spray, walls not counted: single drops and the first few that meet have
 // one-sided surroundings too, at walls above all.
 struct LeaveOutSpray {
-    using Kernel = MeanKernel;
     using Index = ICluster;
     using R = Real<ICluster>;
     View v;
     HD void operator()(ICluster i) const {
         R sum = 0;
         forNeighbours<lists>(v, v.fluidNearFluid, i, load(v.fluid.position, i),
-                             [&](const auto& p, JCluster) LANE_CALL { sum += Kernel::w(p.q); });
+                             [&](const auto& p, JCluster) LANE_CALL { sum += MeanKernel::w(p.q); });
         finish(i, total(sum));
     }
     HD void finish(ICluster i, R company) const {
@@ -84,7 +82,7 @@ struct LeaveOutSpray {
     struct Nothing {};
     HD ScalarField field() const { return v.fluid.normalLength; }
     template <class I> HD Nothing input(I) const { return {}; }
-    HD R of(const Pair<R>& p, Nothing, Nothing) const { return Kernel::w(p.q); }
+    HD R of(const Pair<R>& p, Nothing, Nothing) const { return MeanKernel::w(p.q); }
     HD void finish(ICluster i) const { finish(i, load(field(), i)); }
 };
 
@@ -94,7 +92,6 @@ struct LeaveOutSpray {
 //     kappa = -div n^ = (1 - d) sum_j (n^_i - n^_j).grad W / sum_j (r - n^ n^.r).grad W (with
 //     Adami's r.grad W and -d drops swing 1.3 times as fast)
 struct AddSurfaceTension {
-    using Kernel = MeanKernel;
     using Index = ICluster;
     using R = Real<ICluster>;
     View v;
@@ -106,7 +103,7 @@ struct AddSurfaceTension {
             [&](const auto& p, JCluster j) LANE_CALL {
                 const Vector<R> other = load(v.fluid.normal, j);
                 const R zero = 0,
-                        g = select(dot(other, other) > R(real(0.5)), Kernel::g(p.q), zero),
+                        g = select(dot(other, other) > R(real(0.5)), MeanKernel::g(p.q), zero),
                         in = dot(n, p.r), out = dot(other, p.r);
                 turn = mulAdd(g, in - out, turn);
                 along = mulAdd(g, negMulAdd(R(real(0.5)), mulAdd(in, in, out * out), p.distance2),

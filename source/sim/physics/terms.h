@@ -70,8 +70,8 @@ template <unsigned needs, class I> HD inline Wall<Real<I>> loadWall(const Partic
 // A kernel at one distance, without what all pairs share: what gradients, Laplacians and means are
 // sums of. What no term reads isn't computed.
 template <class R> struct Weights { R g, viscous, w; };
-template <class Kernel, class R> HD inline Weights<R> weights(R q) {
-    return {Kernel::g(q), viscous<Kernel>(q), Kernel::w(q)};
+template <class Kernel, class R> HD inline Weights<R> weights(const StepParameters& c, R q) {
+    return {slopeOf<Kernel>(c, q), viscousOf<Kernel>(c, q), valueOf<Kernel>(c, q)};
 }
 
 // What terms add to, summed over neighbours. The pressure part is kept apart because the classic

@@ -41,14 +41,16 @@ template <class Kernel, Lists which> struct SumGradients {
     struct Nothing {};
     HD VectorField field() const { return v.fluid.pressureAcceleration; }
     template <class I> HD Nothing input(I) const { return {}; }
-    HD Vector<R> of(const Pair<R>& p, Nothing, Nothing) const { return Kernel::g(p.q) * p.r; }
+    HD Vector<R> of(const Pair<R>& p, Nothing, Nothing) const {
+        return slopeOf<Kernel>(v.c, p.q) * p.r;
+    }
     HD void finish(ICluster i) const { finish(i, load(field(), i)); }
     HD void finish(ICluster i, Vector<R> fluid) const {
         const Vector<real> gravity = gravityNow(v);
         const Vector<R> x = load(v.fluid.position, i);
         Vector<R> walls{R(0), R(0), R(0)}, rest = walls;
         forNeighbours<lists>(v, v.wallsNearFluid, i, x, [&](const auto& p, JCluster j) LANE_CALL {
-            const Vector<R> slope = (load(v.walls.mass, j) * Kernel::g(p.q)) * p.r;
+            const Vector<R> slope = (load(v.walls.mass, j) * slopeOf<Kernel>(v.c, p.q)) * p.r;
             const Vector<R> pull =
                 bodyForce(v.c, gravity, load(v.walls.position, j)) - ownAcceleration(v.walls, j);
             walls = walls + slope;
@@ -91,7 +93,7 @@ template <class Kernel, Lists which> struct FindSource {
     HD ScalarField field() const { return v.fluid.source; }
     template <class I> HD Vector<R> input(I i) const { return load(v.fluid.velocity, i); }
     HD R of(const Pair<R>& p, Vector<R> own, Vector<R> other) const {
-        return Kernel::g(p.q) * dot(own - other, p.r);
+        return slopeOf<Kernel>(v.c, p.q) * dot(own - other, p.r);
     }
     HD void finish(ICluster i) const { finish(i, load(field(), i)); }
     HD void finish(ICluster i, R fluid) const {
@@ -100,7 +102,7 @@ template <class Kernel, Lists which> struct FindSource {
         forNeighbours<lists>(v, v.wallsNearFluid, i, load(v.fluid.position, i),
                              [&](const auto& p, JCluster j) LANE_CALL {
                                  const Vector<R> apart = own - ownVelocity(v.walls, j);
-                                 walls = mulAdd(load(v.walls.mass, j) * Kernel::g(p.q),
+                                 walls = mulAdd(load(v.walls.mass, j) * slopeOf<Kernel>(v.c, p.q),
                                                 dot(apart, p.r), walls);
                              });
         const R perRest = 1 / v.c.restDensity,
@@ -126,7 +128,7 @@ template <class Kernel, Lists which> struct AccelerateByPressure {
     HD VectorField field() const { return v.fluid.pressureAcceleration; }
     template <class I> HD R input(I i) const { return load(v.fluid.pressureOverRho2, i); }
     HD Vector<R> of(const Pair<R>& p, R own, R other) const {
-        return (Kernel::g(p.q) * (own + other)) * p.r;
+        return (slopeOf<Kernel>(v.c, p.q) * (own + other)) * p.r;
     }
     HD void finish(ICluster i) const { finish(i, load(field(), i)); }
     HD void finish(ICluster i, Vector<R> fluid) const {
@@ -154,7 +156,7 @@ template <class Kernel, Lists which> struct RelaxPressure {
         return load(v.fluid.pressureAcceleration, i);
     }
     HD R of(const Pair<R>& p, Vector<R> own, Vector<R> other) const {
-        return Kernel::g(p.q) * dot(own - other, p.r);
+        return slopeOf<Kernel>(v.c, p.q) * dot(own - other, p.r);
     }
     HD void finish(ICluster i) const { finish(i, load(field(), i)); }
     HD void finish(ICluster i, R fluid) const {

@@ -175,8 +175,7 @@ private:
             },
             initial, keepsLists ? "" : noLists);
         carriesDensity(scene_) ? add("equation of state", onFluid<ApplyEquationOfState>, initial)
-        : solves()             ? add("density", onPairsOrFluid<ComputeDensity<K, true>>, initial)
-                               : add("density", onPairsOrFluid<ComputeDensity<K>>, initial);
+                               : add("density", densityPass(), initial);
         add("walls", wallPass(), initial, whyNoWallPressure());
         add("surroundings",
             carriesDensity(scene_) ? onFluid<WeighViscosity<K, Lists::All>>
@@ -246,6 +245,13 @@ private:
     static constexpr Lists inner = buildsInner ? Lists::Inner : Lists::All,
                            buildInner = buildsInner ? Lists::BuildInner : Lists::All;
 
+    // The classic formulation has one kernel.
+    Pass densityPass() const {
+        return solves() ? onPairsOrFluid<ComputeDensity<K, true>>
+               : factsOf(scene_).isHistorical
+                   ? onPairsOrFluid<ComputeDensity<CubicSplineKernel, false>>
+                   : onPairsOrFluid<ComputeDensity<K, false>>;
+    }
     Pass wallPass() const {
         if (shiftsParticles(scene_)) return wallPass<true>();
         return wallPass<false>();
@@ -263,7 +269,7 @@ private:
                 TermList<LaminarViscosity<ViscosityForm::Morris>>{});
         if (factsOf(scene_).isHistorical)
             return chooseTerms(
-                scene_, [](auto terms) { return forces<inner>(terms); }, TermList<PressureForce>{},
+                scene_, [](auto terms) { return classicForces(terms); }, TermList<PressureForce>{},
                 TermList<ClassicViscosity>{});
         return withViscosityForm(scene_, [this](auto form) { return forcesOf<form.value>(); });
     }
@@ -292,6 +298,9 @@ private:
     static Pass withoutPressure(TermList<>) { return onFluid<ApplyBodyForce>; }
     template <class... Ts> static Pass withoutPressure(TermList<Ts...> terms) {
         return pairForces(terms);
+    }
+    template <class Terms> static Pass classicForces(Terms) {
+        return onFluid<ComputeForces<CubicSplineKernel, inner, Terms>>;
     }
     template <Lists lists, class Terms> static Pass forces(Terms) {
         return onFluid<ComputeForces<K, lists, Terms>>;
