@@ -7,7 +7,7 @@ one() {
     lanes="-DSPINDRIFT_REAL=double -DLANES=doubles"
     case $name in
         sim/simulation_simd.h) exit 0 ;; # is a translation unit but for its instruction set
-        core/lanes_simd.h | sim/neighbours/cluster_lists.h | sim/neighbours/half_list_sums.h)
+        core/lanes_simd.h | sim/neighbours/cluster_*.h | sim/neighbours/half_list_sums.h)
             lanes="-DSPINDRIFT_SIMD -mavx2 -mbmi -mbmi2 -mfma -mf16c -mpclmul -maes" ;;
     esac
     echo "#include \"$name\"" | c++ -std=c++20 -fopenmp -fsyntax-only -Itests/cuda/emulation -Isource \

@@ -2,6 +2,7 @@
 // Memory of one device. Grows, never shrinks; growing does not keep the contents.
 #include <cstddef>
 #include <utility>
+#include <vector>
 
 namespace spindrift {
 
@@ -24,6 +25,16 @@ public:
         device_->release(data_, capacity_ * sizeof(T));
         data_ = nullptr;
         size_ = capacity_ = 0;
+    }
+    // With what the host has; and back.
+    void fill(const std::vector<T>& host) {
+        resize(host.size());
+        device_->upload(data_, host.data(), host.size());
+    }
+    std::vector<T> download() const {
+        std::vector<T> host(size_);
+        device_->download(host.data(), data_, size_);
+        return host;
     }
     T* data() const { return data_; }
     size_t size() const { return size_; }

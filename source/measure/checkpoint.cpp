@@ -172,20 +172,7 @@ void readObjects(hid_t file, Checkpoint& c) {
     if (state.broken.size() != 2 * objects.bonds.size()) throw Trouble{"broken bonds"};
 }
 
-Checkpoint readAll(hid_t file, const std::string& path) {
-    Checkpoint c;
-    const std::vector<char> text = readArray<char>(file, Format, H5T_NATIVE_UCHAR, 1);
-    const double version = readNumbers(file, "version", 1)[0];
-    if (version > double(Version))
-        throw Error(Exit::Scene, path + ": is of a newer version of the program; update it");
-    c.scene = parseScene(std::string(text.begin(), text.end()), path);
-    const std::vector<double> clock = readNumbers(file, "clock", 3);
-    c.state.clock = {clock[0], clock[1], int64_t(clock[2])};
-    const std::vector<double> start = readNumbers(file, "start", 7);
-    c.state.start = {{start[0], start[1], start[2]}, {start[3], start[4], start[5]}, start[6]};
-    c.state.particles.positions = readVectors(file, "positions");
-    c.state.particles.velocities = readVectors(file, "velocities");
-    c.state.particles.walls = readVectors(file, "walls");
+void readSolids(hid_t file, Checkpoint& c) {
     if (!c.scene.solids.empty()) readSolidSizes(file, c);
     const size_t solids = c.scene.solids.size();
     if (H5Aexists(file, "solid motions") > 0)
@@ -203,6 +190,45 @@ Checkpoint readAll(hid_t file, const std::string& path) {
     const auto floats = [](const Solid& s) { return s.floats(); };
     if (c.state.solids.empty() && std::any_of(c.scene.solids.begin(), c.scene.solids.end(), floats))
         throw Trouble{"solid motions"};
+}
+
+// Each particle has one of each, and all of them can be.
+void checkFluid(const Scene& scene, const RunState& state) {
+    const size_t count = state.particles.positions.size();
+    if (count == 0 || state.particles.velocities.size() != count) throw Trouble{"velocities"};
+    if (carriesDensity(scene) && state.densities.size() != count) throw Trouble{"densities"};
+    for (float rho : state.densities)
+        if (!(std::isfinite(rho) && rho > 0)) throw Trouble{"densities"};
+    if (factsOf(scene).solvesPressure && state.pressures.size() != count)
+        throw Trouble{"pressures"};
+    for (float p : state.pressures)
+        if (!(std::isfinite(p) && p >= 0)) throw Trouble{"pressures"};
+    if (!(state.clock.share > 0 && state.clock.share <= 1)) throw Trouble{"step share"};
+    if (isMultiFluid(scene) && state.particles.bodies.size() != count) throw Trouble{"bodies"};
+    for (const uint16_t body : state.particles.bodies)
+        if (body >= scene.fluid.bodies.size()) throw Trouble{"bodies"};
+    for (const auto* field :
+         {&state.particles.positions, &state.particles.velocities, &state.particles.walls,
+          &state.objects.positions, &state.objects.velocities})
+        for (const Vec3& v : *field)
+            if (!std::isfinite(v.x + v.y + v.z)) throw Trouble{"numbers that are not finite"};
+}
+
+Checkpoint readAll(hid_t file, const std::string& path) {
+    Checkpoint c;
+    const std::vector<char> text = readArray<char>(file, Format, H5T_NATIVE_UCHAR, 1);
+    const double version = readNumbers(file, "version", 1)[0];
+    if (version > double(Version))
+        throw Error(Exit::Scene, path + ": is of a newer version of the program; update it");
+    c.scene = parseScene(std::string(text.begin(), text.end()), path);
+    const std::vector<double> clock = readNumbers(file, "clock", 3);
+    c.state.clock = {clock[0], clock[1], int64_t(clock[2])};
+    const std::vector<double> start = readNumbers(file, "start", 7);
+    c.state.start = {{start[0], start[1], start[2]}, {start[3], start[4], start[5]}, start[6]};
+    c.state.particles.positions = readVectors(file, "positions");
+    c.state.particles.velocities = readVectors(file, "velocities");
+    c.state.particles.walls = readVectors(file, "walls");
+    readSolids(file, c);
     if (!c.scene.objects.empty()) readObjects(file, c);
     if (isMultiFluid(c.scene))
         c.state.particles.bodies = readArray<uint16_t>(file, "bodies", H5T_NATIVE_UINT16, 1);
@@ -215,29 +241,7 @@ Checkpoint readAll(hid_t file, const std::string& path) {
     static_assert(sizeof(CurvePoint) == 4 * sizeof(float));
     if (H5Lexists(file, "curves", H5P_DEFAULT) > 0)
         c.curves = readArray<CurvePoint>(file, "curves", H5T_NATIVE_FLOAT, 4);
-    if (c.state.particles.positions.empty() ||
-        c.state.particles.velocities.size() != c.state.particles.positions.size())
-        throw Trouble{"velocities"};
-    if (carriesDensity(c.scene) && c.state.densities.size() != c.state.particles.positions.size())
-        throw Trouble{"densities"};
-    if (factsOf(c.scene).solvesPressure &&
-        c.state.pressures.size() != c.state.particles.positions.size())
-        throw Trouble{"pressures"};
-    for (float p : c.state.pressures)
-        if (!(std::isfinite(p) && p >= 0)) throw Trouble{"pressures"};
-    if (!(c.state.clock.share > 0 && c.state.clock.share <= 1)) throw Trouble{"step share"};
-    if (isMultiFluid(c.scene) &&
-        c.state.particles.bodies.size() != c.state.particles.positions.size())
-        throw Trouble{"bodies"};
-    for (const uint16_t body : c.state.particles.bodies)
-        if (body >= c.scene.fluid.bodies.size()) throw Trouble{"bodies"};
-    for (float rho : c.state.densities)
-        if (!(std::isfinite(rho) && rho > 0)) throw Trouble{"densities"};
-    for (const auto* field :
-         {&c.state.particles.positions, &c.state.particles.velocities, &c.state.particles.walls,
-          &c.state.objects.positions, &c.state.objects.velocities})
-        for (const Vec3& v : *field)
-            if (!std::isfinite(v.x + v.y + v.z)) throw Trouble{"numbers that are not finite"};
+    checkFluid(c.scene, c.state);
     if (version < 5) spreadOverMetre(c);
     return c;
 }

@@ -456,6 +456,24 @@ void turnIncompressible(Scene& s, uint64_t seed) {
     } catch (const Error&) { s.simulation.formulation = before; }
 }
 
+// `size`: of the domain, in units of `scale`, m.
+Body randomBody(const Scene& s, Dice& dice, float scale, const Vec3& size) {
+    auto between = [&](double a, double b) { return dice.between(a, b); };
+    Body body;
+    body.shape = Shape(dice.random() % 3);
+    const Vec3 low{between(0, 0.6) * size.x, between(0, 0.6) * size.y, between(0, 0.6) * size.z};
+    const Vec3 extent{between(0.1, 0.4) * size.x, between(0.1, 0.4) * size.y,
+                      between(0.1, 0.4) * size.z};
+    body.min = s.domain.min + scale * low, body.max = body.min + scale * extent;
+    body.center = 0.5f * (body.min + body.max);
+    body.radius = 0.4f * scale * std::min({extent.x, extent.y, extent.z});
+    body.height = scale * extent.y;
+    const float speed = std::sqrt(scale) * dice.logarithmic(0.1, 20);
+    body.velocity = {between(-1, 1) * speed, between(-1, 1) * speed,
+                     s.simulation.dimensions == 3 ? between(-1, 1) * speed : 0};
+    return body;
+}
+
 }  // namespace
 
 StressCase randomCase(uint64_t seed) {
@@ -496,23 +514,8 @@ StressCase randomCase(uint64_t seed) {
         s.fluid.speedRatio = between(8, 20);
         s.compute.skin = oneIn(4) ? 0 : between(0.02, 0.4);
         s.fluid.bodies.clear();
-        for (uint64_t b = 0, n = 1 + random() % 3; b < n; ++b) {
-            Body body;
-            body.shape = Shape(random() % 3);
-            const Vec3 low{between(0, 0.6) * size.x, between(0, 0.6) * size.y,
-                           between(0, 0.6) * size.z};
-            const Vec3 extent{between(0.1, 0.4) * size.x, between(0.1, 0.4) * size.y,
-                              between(0.1, 0.4) * size.z};
-            body.min = s.domain.min + float(scale) * low,
-            body.max = body.min + float(scale) * extent;
-            body.center = 0.5f * (body.min + body.max);
-            body.radius = 0.4f * float(scale) * std::min({extent.x, extent.y, extent.z});
-            body.height = float(scale) * extent.y;
-            const float speed = std::sqrt(float(scale)) * logarithmic(0.1, 20);
-            body.velocity = {between(-1, 1) * speed, between(-1, 1) * speed,
-                             s.simulation.dimensions == 3 ? between(-1, 1) * speed : 0};
-            s.fluid.bodies.push_back(body);
-        }
+        for (uint64_t b = 0, n = 1 + random() % 3; b < n; ++b)
+            s.fluid.bodies.push_back(randomBody(s, dice, float(scale), size));
         turnRareKnobs(s, seed);
         turnLocal(s, seed);
         const bool fluidsKeepEnergy = turnFluids(s, seed),

@@ -173,54 +173,69 @@ template <class Box> void checkBox(const Box& box, const std::string& path) {
                                               box.min[k], "xyz"[k]));
 }
 
+// Where an object reaches to, m.
+struct Reach {
+    Vec3 low, high;
+};
+
+Reach checkShell(const Scene& scene, const Object& o, const std::string& path) {
+    if (scene.simulation.dimensions == 2)
+        refuse(path + ".shape",
+               "a shell has three dimensions; use another shape, or simulation.dimensions 3");
+    Form form;
+    form.shape = Shape::Mesh, form.path = o.path, form.scale = o.scale, form.offset = o.offset;
+    checkMesh(scene, form, 1, path);
+    const Vec3d half = halfExtent(form), middle = convexOf(form, 3).middle;
+    const Reach reach{toFloat(middle - half), toFloat(middle + half)};
+    for (int k = 0; k < 3; ++k)
+        if (reach.low[k] < scene.domain.min[k] || reach.high[k] > scene.domain.max[k])
+            refuseMeshPlace(scene, form, path);
+    return reach;
+}
+
+Reach checkTube(const Scene& scene, const Object& o, const std::string& path) {
+    const bool flat = scene.simulation.dimensions == 2;
+    const float out = o.radius + o.thickness / 2;
+    Reach reach;
+    for (int k = 0; k < 3; ++k) {
+        const float half = !flat && k == int(o.axis) ? o.height / 2 : out;
+        reach.low[k] = o.center[k] - half, reach.high[k] = o.center[k] + half;
+    }
+    if (o.thickness >= 2 * o.radius)
+        refuse(path + ".thickness",
+               fmt::format("{} m leaves no room in the tube; make it less than twice the radius",
+                           o.thickness));
+    if (flat && o.axis != Axis::Z)
+        refuse(path + ".axis", "in two dimensions a tube is a ring about z; use z");
+    return reach;
+}
+
+Reach checkBlock(const Scene& scene, const Object& o, const std::string& path) {
+    checkBox(o, path);
+    const int dimensions = scene.simulation.dimensions;
+    int sides = 0;
+    for (int k = 0; k < dimensions; ++k) sides += o.max[k] > o.min[k];
+    if (sides != dimensions - (o.shape == ObjectShape::Sheet))
+        refuse(path, o.shape == ObjectShape::Sheet
+                         ? "a sheet is flat along one axis: give min and max the same value "
+                           "there, and others elsewhere"
+                         : "a block is no wider than a point along an axis; make max larger "
+                           "than min, or use a sheet");
+    return {o.min, o.max};
+}
+
 void checkObject(const Scene& scene, size_t index) {
     const Object& o = scene.objects[index];
     const std::string path = fmt::format("objects[{}]", index);
-    const bool flat = scene.simulation.dimensions == 2;
     const float spacing = spacingOf(scene, o);
     if (spacing < 0.05f * scene.simulation.spacing)
         refuse(path + ".spacing", fmt::format("{:.4g} m is less than a twentieth of "
                                               "simulation.spacing; raise it, or 0 for the same",
                                               spacing));
-    Vec3 low = o.min, high = o.max;
-    int sides = 0;
-    if (o.shape == ObjectShape::Shell) {
-        if (flat)
-            refuse(path + ".shape",
-                   "a shell has three dimensions; use another shape, or simulation.dimensions 3");
-        Form form;
-        form.shape = Shape::Mesh, form.path = o.path, form.scale = o.scale, form.offset = o.offset;
-        checkMesh(scene, form, 1, path);
-        const Vec3d half = halfExtent(form), middle = convexOf(form, 3).middle;
-        low = toFloat(middle - half), high = toFloat(middle + half);
-        for (int k = 0; k < 3; ++k)
-            if (low[k] < scene.domain.min[k] || high[k] > scene.domain.max[k])
-                refuseMeshPlace(scene, form, path);
-    } else if (o.shape == ObjectShape::Tube) {
-        const float out = o.radius + o.thickness / 2;
-        for (int k = 0; k < 3; ++k) {
-            const float half = !flat && k == int(o.axis) ? o.height / 2 : out;
-            low[k] = o.center[k] - half, high[k] = o.center[k] + half;
-        }
-        if (o.thickness >= 2 * o.radius)
-            refuse(
-                path + ".thickness",
-                fmt::format("{} m leaves no room in the tube; make it less than twice the radius",
-                            o.thickness));
-        if (flat && o.axis != Axis::Z)
-            refuse(path + ".axis", "in two dimensions a tube is a ring about z; use z");
-    } else {
-        checkBox(o, path);
-        for (int k = 0; k < (flat ? 2 : 3); ++k) sides += high[k] > low[k];
-        const int wanted = (flat ? 2 : 3) - (o.shape == ObjectShape::Sheet);
-        if (sides != wanted)
-            refuse(path, o.shape == ObjectShape::Sheet
-                             ? "a sheet is flat along one axis: give min and max the same value "
-                               "there, and others elsewhere"
-                             : "a block is no wider than a point along an axis; make max larger "
-                               "than min, or use a sheet");
-    }
-    for (int k = 0; k < (flat ? 2 : 3); ++k) {
+    const auto [low, high] = o.shape == ObjectShape::Shell  ? checkShell(scene, o, path)
+                             : o.shape == ObjectShape::Tube ? checkTube(scene, o, path)
+                                                            : checkBlock(scene, o, path);
+    for (int k = 0; k < scene.simulation.dimensions; ++k) {
         if (low[k] < scene.domain.min[k] || high[k] > scene.domain.max[k])
             refuse(path, fmt::format(
                              "reaches from {} to {} m along {}, out of the domain; move it inside",
@@ -236,7 +251,7 @@ void checkObject(const Scene& scene, size_t index) {
     if (reach > most)
         refuse(path + ".spacing",
                fmt::format("contacts would reach {:.4g} m, more than the four support radii, "
-                           "{:.4g} m, of who is looked at; lower it",
+                           "{:.4g} m, in which neighbours are looked for; lower it",
                            reach, most));
 }
 

@@ -157,8 +157,9 @@ private:
         const bool halfListsBefore = flow_.usesHalfLists();
         flow_.scene = scene;
         if (flow_.usesHalfLists() != halfListsBefore) flow_.search.outdate();
-        StepParameters& c = flow_.parameters;
-        c = makeStepParameters(flow_.scene, flow_.extent);
+        flow_.model = makeModel(flow_.scene, flow_.extent);
+        StepParameters& c = flow_.model.shared;
+        c.maxStep = min(c.maxStep, real(longestStepOf(flow_.model, OptionalTerms{})));
         forEachPart(parts(), [&](auto& part) { part.refresh(); });
         forEachPart(parts(),
                     [&](auto& part) { c.maxStep = min(c.maxStep, real(part.longestStep())); });

@@ -5,7 +5,8 @@
 #include "device/cuda.h"
 #include "device/omp.h"
 #include "sim/make_simulation.h"
-#include "sim/physics/passes.h"
+#include "sim/particles/sort_passes.h"
+#include "sim/physics/time_step.h"
 
 #include <gtest/gtest.h>
 

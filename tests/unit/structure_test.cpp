@@ -166,18 +166,65 @@ size_t widthOf(const std::string& line) {
         std::count_if(line.begin(), line.end(), [](char c) { return (c & 0xC0) != 0x80; }));
 }
 
+// Calls f(path, lines) for each file of C++ or CUDA below a folder.
+template <class F> void forCode(const fs::path& top, const F& f) {
+    for (const fs::path& path : filesBelow(top)) {
+        const std::string kind = path.extension().string();
+        if (kind == ".cpp" || kind == ".h" || kind == ".cu") f(path, linesOf(path));
+    }
+}
+
 TEST(Structure, LinesFitIntoAHundredColumns) {
     EXPECT_EQ(widthOf("m/s²"), 4u);
     for (const fs::path& top : {Source, Root / "tests", Root / "examples"})
-        for (const fs::path& path : filesBelow(top)) {
-            const std::string kind = path.extension().string();
-            if (kind != ".cpp" && kind != ".h" && kind != ".cu") continue;
-            int number = 0;
-            for (const std::string& line : linesOf(path)) {
-                ++number;
-                EXPECT_LE(widthOf(line), 100u) << path << ":" << number;
-            }
+        forCode(top, [](const fs::path& path, const std::vector<std::string>& lines) {
+            for (size_t k = 0; k < lines.size(); ++k)
+                EXPECT_LE(widthOf(lines[k]), 100u) << path << ":" << k + 1;
+        });
+}
+
+TEST(Structure, FilesOfTheSimulationAreShort) {
+    int files = 0;
+    forCode(Source / "sim", [&](const fs::path& path, const std::vector<std::string>& lines) {
+        ++files;
+        EXPECT_LE(lines.size(), 350u) << path << ": split it";
+    });
+    EXPECT_GT(files, 40);
+}
+
+// Lines of the function that begins with line `k`, as clang-format breaks them; 0: none does.
+size_t functionLength(const std::vector<std::string>& lines, size_t k) {
+    const std::string& line = lines[k];
+    const size_t indent = line.find_first_not_of(' ');
+    if (indent == std::string::npos || !line.ends_with("{") || line.find(')') == std::string::npos)
+        return 0;
+    static const std::regex other(
+        R"(^\s*(if|for|while|switch|else|do|namespace|struct|class|enum|union|try|return|case|\}|#).*)"
+        R"(|.*\[[^\]]*\]\(.*|.*LANE_CALL.*)");
+    if (std::regex_match(line, other)) return 0;
+    for (size_t end = k + 1; end < lines.size(); ++end) {
+        if (lines[end].starts_with(std::string(indent, ' ') + "}")) return end - k + 1;
+        if (lines[end].find_first_not_of(' ') < indent) return 0;
+    }
+    return 0;
+}
+
+// But for tables: of knobs, of validation cases, of tortures.
+TEST(Structure, FunctionsAreShort) {
+    EXPECT_EQ(functionLength({"int f(int a) {", "    return a;", "}"}, 0), 3u);
+    EXPECT_EQ(functionLength({"    if (a) {", "    }"}, 0), 0u);
+    const std::set<std::string> tables = {"scene/schema.h", "measure/validation.cpp"};
+    int functions = 0;
+    forCode(Source, [&](const fs::path& path, const std::vector<std::string>& lines) {
+        const std::string name = path.lexically_relative(Source).string();
+        for (size_t k = 0; k < lines.size() && !tables.contains(name); ++k) {
+            const size_t length = functionLength(lines, k);
+            functions += length > 0;
+            const bool table = lines[k].starts_with("std::vector<StressCase> tortures(");
+            EXPECT_LE(length, table ? 80u : 60u) << name << ":" << k + 1 << ": split it";
         }
+    });
+    EXPECT_GT(functions, 1000) << "found too few functions to believe it";
 }
 
 // All that the expression's first group matches in a text.

@@ -118,6 +118,8 @@ void answer(Ui& ui, SDL_Keycode key) {
 
 void pressKey(Ui& ui, SDL_Keycode key) {
     if (ui.asking) return answer(ui, key);
+    if (key == SDLK_MINUS || key == SDLK_KP_MINUS) return changeSpeed(ui, 0.5f);
+    if (key == SDLK_PLUS || key == SDLK_EQUALS || key == SDLK_KP_PLUS) return changeSpeed(ui, 2);
     View& view = ui.player.scene.view;
     switch (key) {
         case SDLK_SPACE:
@@ -132,17 +134,11 @@ void pressKey(Ui& ui, SDL_Keycode key) {
         case SDLK_HOME:
             ui.resetCamera();
             break;
-        case SDLK_1:
-            ui.colorBy(ColorBy::Plain);
-            break;
+        case SDLK_1:  // in the order of ColorBy
         case SDLK_2:
-            ui.colorBy(ColorBy::Velocity);
-            break;
         case SDLK_3:
-            ui.colorBy(ColorBy::Pressure);
-            break;
         case SDLK_4:
-            ui.colorBy(ColorBy::Density);
+            ui.colorBy(ColorBy(key - SDLK_1));
             break;
         case SDLK_b:
             view.showWalls = !view.showWalls;
@@ -162,15 +158,6 @@ void pressKey(Ui& ui, SDL_Keycode key) {
             break;
         case SDLK_z:
             if (ui.held & KMOD_CTRL) ui.undo();
-            break;
-        case SDLK_MINUS:
-        case SDLK_KP_MINUS:
-            changeSpeed(ui, 0.5f);
-            break;
-        case SDLK_PLUS:
-        case SDLK_EQUALS:
-        case SDLK_KP_PLUS:
-            changeSpeed(ui, 2);
             break;
         case SDLK_h:
         case SDLK_F1:

@@ -34,7 +34,7 @@ template <class Device> Measurement measureFluid(Flow<Device>& flow) {
     m.densityError = t.compression / count;
     m.maxDensityError = t.maxRatio - 1;
     m.maxSpeed = std::sqrt(t.maxSpeed2);
-    m.soundSpeed = flow.parameters.soundSpeed;
+    m.soundSpeed = flow.model.shared.soundSpeed;
     m.finite = t.notFinite == 0;
     return m;
 }

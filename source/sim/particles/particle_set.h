@@ -5,7 +5,7 @@
 #include "core/error.h"
 #include "sim/particles/output_passes.h"
 #include "sim/particles/particle_fields.h"
-#include "sim/physics/passes.h"
+#include "sim/particles/sort_passes.h"
 #include "sim/simulation.h"
 
 #include <algorithm>

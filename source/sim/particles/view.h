@@ -163,6 +163,8 @@ struct Blocks {
         *near;  // whether it has an active particle; what its clusters are that have none
 };
 
+inline Vector<real> toVector(Vec3 a) { return {real(a.x), real(a.y), real(a.z)}; }
+
 struct StepParameters {
     Kernel kernel;
     real support, support2, inverseSupport2;  // R, R^2, 1/R^2
@@ -176,32 +178,15 @@ struct StepParameters {
     real backgroundPressure;  // p0, Pa
     real leastPressure;       // Pa
     real diffusion;           // 2 delta h c, m^2/s, of carried density
-    real shifting;            // shift velocity per largest speed, m
-    real shiftWeight;         // 1 / w at the distance of neighbours on the lattice
     int dimensions;
-    real flatMoment;  // what makes moments in two dimensions invertible: 1, otherwise 0
-    real laminar;     // 2 mu, Pa s, for the kernel's own sums of Laplacians; over s^2 in Monaghan's
-                      // form
-    real perSurroundings;           // 1 / what WeighViscosity sums up around a lattice point
-    real artificial;                // alpha c h / 2, m^2/s
-    real classicViscosity;          // nu m / (rho0 pi R^5) in units of gradientScale
-    real surfaceTension;            // 2 sigma / rho0, m³/s^2
-    real normalScale;               // m gradientNorm / (rho0 R^5) of MeanKernel
-    real leastCompany;              // sum of MeanKernel::w, below which there is but spray
-    real leastNormal;               // 1/m: shorter ones belong to no surface
-    real velocityTransfer;          // rate kernelScale / 2 in units of gradientScale
-    real buoyancy;                  // b kernelScale / rho0^2 in units of gradientScale
-    real dissipation, airDrag;      // 1/s, 1/m
-    Vector<real> wind;              // m/s
-    real aloneDensity;              // of a particle without neighbours / rho0
-    real densityShare, relaxation;  // of the pressure solve (scene.h)
-    real latticeSquares;            // kg^2/m^8, sum_j (m grad W)^2 of a lattice point
-    real eta2;                      // 0.01 h^2, keeps 1/d^2 finite
-    real accelerationLimit;         // m/s²
-    Vector<real> gravity;           // m/s²
-    real gravityRate;               // 1/s, how fast it grows from 0; 0: it is there at once
-    real centralPull;               // 1/s^2, Omega^2 of -Omega^2 (x - center)
-    Vector<real> center;            // m
+    real flatMoment;         // what makes moments in two dimensions invertible: 1, otherwise 0
+    bool isViscous;          // laminar viscosity acts
+    real eta2;               // 0.01 h^2, keeps 1/d^2 finite
+    real accelerationLimit;  // m/s²
+    Vector<real> gravity;    // m/s²
+    real gravityRate;        // 1/s, how fast it grows from 0; 0: it is there at once
+    real centralPull;        // 1/s^2, Omega^2 of -Omega^2 (x - center)
+    Vector<real> center;     // m
     Vector<real> slidesBelow, slidesAbove;  // m: boundary particles below or above these slide with
     Vector<real> slideVelocity;             // m/s
     Vector<real> slipBelow, slipAbove;      // m, Navier's lengths of the faces at 0 and at the end

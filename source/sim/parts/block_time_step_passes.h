@@ -6,7 +6,8 @@
 // evaluated nor moved until something comes near.
 #pragma once
 
-#include "sim/physics/passes.h"
+#include "sim/physics/density.h"
+#include "sim/physics/time_step.h"
 
 namespace spindrift::LANES {
 

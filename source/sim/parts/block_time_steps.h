@@ -53,9 +53,9 @@ public:
     void choose(Plan& plan, Initial initial) {
         plan.add(
             "rest", [this] { findResting(); }, initial,
-            !areOn()                         ? allAlike
-            : flow_.parameters.restSpeed > 0 ? ""
-                                             : "nothing rests (time.rest_speed)");
+            !areOn()                           ? allAlike
+            : flow_.model.shared.restSpeed > 0 ? ""
+                                               : "nothing rests (time.rest_speed)");
         plan.add(
             "active", [this] { findActive(); }, initial, areOn() ? "" : allAlike);
     }

@@ -2,6 +2,9 @@
 #pragma once
 
 #include "sim/neighbours/neighbours.h"
+#include "sim/physics/model.h"
+
+#include <cmath>
 
 namespace spindrift::LANES {
 
@@ -25,6 +28,31 @@ struct ContactLaw {
     real fluidRadius;  // m
     real perMass;      // 1/kg, of a fluid particle
 };
+
+// N/m: unless the knob says so, fluid is as hard as its sound makes it.
+inline double contactStiffness(const Model& model) {
+    const Scene& scene = *model.scene;
+    const double rate = 0.4 * double(model.shared.soundSpeed) / model.h();
+    return scene.contact.stiffness > 0 ? double(scene.contact.stiffness)
+                                       : particleMass(scene) * rate * rate;
+}
+inline ContactLaw contactLaw(const Model& model) {
+    const Contact& knobs = model.scene->contact;
+    const double m = particleMass(*model.scene), k = contactStiffness(model),
+                 critical = 2 * std::sqrt(k * m);
+    ContactLaw law{};
+    law.stiffness = real(k), law.damping = real(knobs.damping * critical),
+    law.shear = real(knobs.shear * critical);
+    auto closer = [&](int n) {
+        return std::exp(knobs.steepness * (1 - double(n) / ContactLaw::pieces));
+    };
+    law.first = real(closer(0));
+    for (int n = 0; n < ContactLaw::pieces; ++n)
+        law.bends[n] = real(closer(n + 1) - closer(n) - (n > 0 ? closer(n) - closer(n - 1) : 0));
+    law.influence = knobs.influence, law.fluidRadius = model.scene->simulation.spacing / 2,
+    law.perMass = real(1 / m);
+    return law;
+}
 
 // What contact passes see. The view's support is the longest reach of a contact, by which
 // neighbours are found.

@@ -63,7 +63,7 @@ public:
                                   ? motionAtHome(flow_.scene, flow_.scene.solids[s], onHost_[s])
                                   : SolidMotion{});
         CHECK(motions.size() == onHost_.size());
-        fill(motions_, motions);
+        motions_.fill(motions);
         solids_.followBodies(bodies_.data(), motions_.data());
     }
     void save(RunState& state) {
@@ -82,7 +82,7 @@ public:
             onHost_[s].stiffness = real(onHost_[s].mass * rate * rate / faces_[s]);
             onHost_[s].damping = real(2 * ratio * onHost_[s].mass * rate / faces_[s]);
         }
-        fill(bodies_, onHost_);
+        bodies_.fill(onHost_);
         solids_.followBodies(bodies_.data(), motions_.data());
     }
     void addForces(Plan& plan, Initial initial) {
@@ -157,10 +157,10 @@ private:
     }
     // From now on the mouse holds this one, -1: none.
     void takeInHand(int solid) {
-        fill(stops_, std::vector<Stops>(1)), fill(loads_, std::vector<SolidLoad>(onHost_.size()));
+        stops_.fill(std::vector<Stops>(1)), loads_.fill(std::vector<SolidLoad>(onHost_.size()));
         handMass_ = 0;
         if (solid < 0 || flow_.scene.solids[size_t(solid)].floats()) return;
-        solids_.reserveLoads(flow_.walls.slots());
+        solids_.reserveLoads();
         handMass_ = massInHand(flow_.scene, flow_.scene.solids[size_t(solid)]);
     }
     // Of fluid in its place, kg; thin ones take more along than that, planes all of it.
@@ -175,10 +175,6 @@ private:
         const double along =
             scene.simulation.dimensions == 2 ? side.x * side.x : side.x * side.y * side.y;
         return std::max(massOf(scene, solid).mass, 0.1 * double(solid.density) * along);
-    }
-    template <class T> void fill(Buffer<T, Device>& buffer, const std::vector<T>& host) {
-        buffer.resize(host.size());
-        device_.upload(buffer.data(), host.data(), host.size());
     }
     static real deepestBall(const Scene& scene) { return real(0.75) * scene.simulation.spacing; }
     static RigidBody bodyOf(const Scene& scene, const Solid& solid) {

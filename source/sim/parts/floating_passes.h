@@ -3,6 +3,7 @@
 #pragma once
 
 #include "sim/parts/collisions.h"
+#include "sim/parts/solid_load_passes.h"
 
 namespace spindrift::LANES {
 

@@ -2,10 +2,11 @@
 // where they go.
 #pragma once
 
+#include "core/vertex.h"
 #include "scene/motion.h"
 #include "sim/parts/contact.h"
 #include "sim/parts/floating_passes.h"
-#include "sim/physics/passes.h"
+#include "sim/physics/time_step.h"
 #include "sim/parts/solid_passes.h"
 
 namespace spindrift::LANES {

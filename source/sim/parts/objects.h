@@ -25,13 +25,13 @@ public:
         if (count() == 0) return;
         const Scene& scene = flow.scene;
         fillVectors(home_, sample_.positions);
-        fill(mass_, std::vector<real>(sample_.masses.begin(), sample_.masses.end()));
-        fill(radius_, std::vector<real>(sample_.radii.begin(), sample_.radii.end()));
-        fill(object_, sample_.objects), fill(grip_, sample_.grips),
-            fill(atSurface_, sample_.atSurface);
+        mass_.fill(std::vector<real>(sample_.masses.begin(), sample_.masses.end()));
+        radius_.fill(std::vector<real>(sample_.radii.begin(), sample_.radii.end()));
+        object_.fill(sample_.objects), grip_.fill(sample_.grips),
+            atSurface_.fill(sample_.atSurface);
         std::vector<Material> materials;
         for (const Object& o : scene.objects) materials.push_back({o.damping, o.breakingStrain});
-        fill(materials_, materials), fill(cuts_, scene.cuts);
+        materials_.fill(materials), cuts_.fill(scene.cuts);
         std::vector<GripKeys> grips;
         std::vector<MotionKey> keys;
         for (const Grip& g : scene.grips) {
@@ -39,7 +39,7 @@ public:
             grips.push_back({int(keys.size()), int(keys.size() + own.size())});
             keys.insert(keys.end(), own.begin(), own.end());
         }
-        fill(grips_, grips), fill(keys_, keys);
+        grips_.fill(grips), keys_.fill(keys);
         given_.resize(vectorSize(padded()));
         if (solids.floats())
             press_.resize(vectorSize(padded())), pressedBy_.resize(size_t(padded()));
@@ -66,13 +66,14 @@ public:
             for (int b = firstBondOnHost_[i]; b < firstBondOnHost_[i + 1]; ++b)
                 if (!state.broken.empty() && state.broken[size_t(b)])
                     bonds[size_t(b)].stiffness = 0, torn[i] = 1;
-        fill(bonds_, bonds), fill(torn_, torn);
+        bonds_.fill(bonds), torn_.fill(torn);
         std::vector<int> slots(sample_.size(), -1);
-        fill(slot_, slots);
+        slot_.fill(slots);
         std::vector<Vec3> places;
         std::vector<int> ids;
         for (int i = 0; i < count(); ++i)
-            if (sample_.atSurface[size_t(i)] || mayTear(scene, i))
+            if (sample_.atSurface[size_t(i)] || !scene.cuts.empty() ||
+                scene.objects[size_t(sample_.objects[size_t(i)])].breakingStrain > 0)
                 places.push_back(sample_.positions[size_t(i)]), ids.push_back(i);
         sorted_.upload(places, {}, {}, ids);
         device_.forEach(sorted_.slots(), FetchPlaces{particles(), sorted_.view()});
@@ -80,13 +81,19 @@ public:
     void save(RunState& run) {
         if (count() == 0) return;
         ObjectState& s = run.objects;
-        s.positions = vectors(position_), s.velocities = vectors(velocity_);
-        std::vector<BondEnd> bonds(bonds_.size());
-        device_.download(bonds.data(), bonds_.data(), bonds.size());
-        for (const BondEnd& b : bonds) s.broken.push_back(b.stiffness <= 0);
+        for (const Vec3d& x : doubles(position_)) s.positions.push_back(toFloat(x));
+        for (const Vec3d& v : doubles(velocity_)) s.velocities.push_back(toFloat(v));
+        for (const BondEnd& b : bonds_.download()) s.broken.push_back(b.stiffness <= 0);
     }
     void refresh() {
-        if (count() > 0) setLaw(flow_.scene, flow_.parameters.soundSpeed);
+        if (count() == 0) return;
+        law_ = contactLaw(flow_.model);
+        float largest = 0;
+        for (const float r : sample_.radii) largest = std::max(largest, r);
+        const Scene& scene = flow_.scene;
+        const float room = scene.simulation.spacing / 2 + largest;
+        reach_ = std::max(scene.contact.influence * room, 2 * largest);
+        longestStep_ = stableStep();
     }
     // s, that springs and contacts bear.
     double longestStep() const { return longestStep_; }
@@ -176,28 +183,6 @@ public:
 
 private:
     const char* whyNone() const { return count() > 0 ? "" : "there are no objects"; }
-    // Of contacts, as live knobs say; `sound` in m/s.
-    void setLaw(const Scene& scene, double sound) {
-        const Contact& knobs = scene.contact;
-        const double m = particleMass(scene), h = supportRadius(scene) / 2, rate = 0.4 * sound / h;
-        const double k = knobs.stiffness > 0 ? double(knobs.stiffness) : m * rate * rate,
-                     critical = 2 * std::sqrt(k * m);
-        law_.stiffness = real(k), law_.damping = real(knobs.damping * critical),
-        law_.shear = real(knobs.shear * critical);
-        auto closer = [&](int n) {
-            return std::exp(knobs.steepness * (1 - double(n) / ContactLaw::pieces));
-        };
-        law_.first = real(closer(0));
-        for (int n = 0; n < ContactLaw::pieces; ++n)
-            law_.bends[n] =
-                real(closer(n + 1) - closer(n) - (n > 0 ? closer(n) - closer(n - 1) : 0));
-        law_.influence = knobs.influence, law_.fluidRadius = scene.simulation.spacing / 2,
-        law_.perMass = real(1 / m);
-        float largest = 0;
-        for (const float r : sample_.radii) largest = std::max(largest, r);
-        reach_ = std::max(knobs.influence * (scene.simulation.spacing / 2 + largest), 2 * largest);
-        longestStep_ = stableStep(scene, k * std::exp(double(knobs.steepness)));
-    }
     void placeSurface() { device_.forEach(sorted_.slots(), PlaceSurface{particles(), surface()}); }
     // Forces on fluid and objects where they are, and on solids that float.
     void touch() {
@@ -290,11 +275,14 @@ private:
             whole_[size_t(next[size_t(b.b)]++)] = {b.a, b.length, b.stiffness};
         }
         firstBondOnHost_ = first;
-        fill(firstBond_, first);
+        firstBond_.fill(first);
     }
     // A particle on its springs swings at no more than sqrt(2 sum k / m) and is slowed at no more
     // than 2 sum c / m.
-    double stableStep(const Scene& scene, double contact) const {
+    double stableStep() const {
+        const Scene& scene = flow_.scene;
+        const double contact =
+            contactStiffness(flow_.model) * std::exp(double(scene.contact.steepness));
         double fastest = 0;
         for (size_t i = 0; i < sample_.size(); ++i) {
             const double m = sample_.masses[i],
@@ -308,10 +296,6 @@ private:
         }
         return 1.5 / fastest;  // it is stable to 2
     }
-    bool mayTear(const Scene& scene, int i) const {
-        return !scene.cuts.empty() ||
-               scene.objects[size_t(sample_.objects[size_t(i)])].breakingStrain > 0;
-    }
     ContactForces presses() { return {{press_.data()}, {pressedBy_.data()}}; }
     int padded() const { return (count() + clusterSize - 1) / clusterSize * clusterSize; }
     template <class V>
@@ -319,24 +303,14 @@ private:
         std::vector<real> x(vectorSize(padded()));
         for (size_t i = 0; i < values.size(); ++i)
             for (int k = 0; k < 3; ++k) x[vectorOffset(int(i), k)] = real(values[i][k]);
-        fill(buffer, x);
+        buffer.fill(x);
     }
     std::vector<Vec3d> doubles(const Buffer<real, Device>& buffer) const {
-        std::vector<real> x(buffer.size());
-        device_.download(x.data(), buffer.data(), x.size());
+        const std::vector<real> x = buffer.download();
         std::vector<Vec3d> out(sample_.size());
         for (size_t i = 0; i < out.size(); ++i)
             for (int k = 0; k < 3; ++k) out[i][k] = double(x[vectorOffset(int(i), k)]);
         return out;
-    }
-    std::vector<Vec3> vectors(const Buffer<real, Device>& buffer) const {
-        std::vector<Vec3> out;
-        for (const Vec3d& v : doubles(buffer)) out.push_back(toFloat(v));
-        return out;
-    }
-    template <class T> void fill(Buffer<T, Device>& buffer, const std::vector<T>& host) {
-        buffer.resize(host.size());
-        device_.upload(buffer.data(), host.data(), host.size());
     }
 
     Flow<Device>& flow_;

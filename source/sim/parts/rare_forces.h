@@ -3,7 +3,10 @@
 
 #include "sim/step/flow.h"
 #include "sim/parts/part.h"
+#include "sim/physics/forces.h"
 #include "sim/physics/surface.h"
+
+#include <cmath>
 
 namespace spindrift::LANES {
 
@@ -17,6 +20,14 @@ public:
         plan.add(
             "surface tension", [this] { flow_.template onFluid<AddSurfaceTension>(); }, initial,
             none);
+    }
+    // Brackbill 1992.
+    double longestStep() const {
+        const Fluid& f = flow_.scene.fluid;
+        const double h = flow_.model.h(), pi = 3.14159265358979323846;
+        return f.surfaceTension > 0
+                   ? 0.25 * std::sqrt(f.restDensity * h * h * h / (2 * pi * f.surfaceTension))
+                   : 1e9;
     }
 
 private:
@@ -33,6 +44,7 @@ public:
             "mixing", [this] { flow_.template onPairsOrFluid<Pass>(); }, initial,
             hasMixingForces(flow_.scene) ? "" : "fluid.velocity_transfer and fluid.buoyancy are 0");
     }
+    double longestStep() const { return longestStepOf(flow_.model, Mixing{}); }
 
 private:
     Flow<Device>& flow_;

@@ -2,69 +2,21 @@
 #pragma once
 
 #include "core/error.h"
-#include "scene/convex.h"
-#include "scene/lattice.h"
 #include "scene/mass.h"
-#include "scene/motion.h"
 #include "scene/sample_solid.h"
 #include "scene/thin_solid.h"
 #include "sim/step/flow.h"
 #include "sim/parts/part.h"
+#include "sim/parts/solid_at_home.h"
+#include "sim/parts/solid_loads.h"
 #include "sim/parts/solid_passes.h"
+#include "sim/physics/walls.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 namespace spindrift::LANES {
-
-inline Vector<real> toReal(Vec3d a) { return {real(a.x), real(a.y), real(a.z)}; }
-inline Vec3d toVec3d(Vector<real> a) { return {double(a.x), double(a.y), double(a.z)}; }
-
-// A solid at its place in the scene, before it has moved.
-inline SolidState solidAtHome(const Scene& scene, const Solid& solid) {
-    const Convex shape = convexOf(solid, scene.simulation.dimensions);
-    Vec3d middle = shape.middle - toDouble(scene.domain.min);
-    if (scene.simulation.dimensions == 2)
-        middle.z = 0.5 * double(scene.domain.max.z - scene.domain.min.z);
-    SolidState s{};
-    s.grace = real(std::min(thinness(scene, solid) / 8, 0.05 * double(scene.simulation.spacing)));
-    s.hides = needsScreen(scene, solid), s.plate = faceOfPlate(scene, solid);
-    s.home = s.middle = s.middleBefore = toReal(middle);
-    s.axis[0] = {1, 0, 0}, s.axis[1] = {0, 1, 0}, s.axis[2] = {0, 0, 1};
-    for (int k = 0; k < 3; ++k) s.axisBefore[k] = s.axis[k];
-    s.spinAxis = int(solid.spinAxis);
-    s.planes = shape.planes;
-    for (int k = 0; k < shape.planes; ++k)
-        s.normal[k] = toReal(shape.normal[k]), s.offset[k] = real(shape.offset[k]);
-    s.slip = slipLength(solid.slip);
-    s.radius = real(shape.radius), s.across = toReal(shape.across);
-    s.reach = solid.shape == Shape::Plane ? real(1e9) : real(reachOf(solid));
-    return s;
-}
-
-// Of all meshes, one after the other, the distances from their surfaces.
-inline std::vector<real> fieldsOf(const Scene& scene, std::vector<SolidState>& states) {
-    std::vector<real> all;
-    for (size_t k = 0; k < states.size(); ++k) {
-        const Convex shape = convexOf(scene.solids[k], scene.simulation.dimensions);
-        if (!shape.mesh) continue;
-        const DistanceField field =
-            shape.mesh->field(shape.mesh->fieldSpacing(scene.simulation.spacing / shape.scale));
-        for (float distance : field.distances) all.push_back(real(shape.scale * double(distance)));
-        states[k].nodes = field.nodes;
-        states[k].fieldLow = toReal(shape.scale * field.low),
-        states[k].nodesPerMetre = real(1 / (shape.scale * field.spacing));
-    }
-    return all;
-}
-inline void pointToFields(std::vector<SolidState>& states, const real* fields) {
-    for (SolidState& s : states) {
-        if (s.nodes.x == 0) continue;
-        s.field = fields;
-        fields += size_t(s.nodes.x) * size_t(s.nodes.y) * size_t(s.nodes.z);
-    }
-}
 
 // Owns the solids and what their particles and those of the domain's walls have from the start.
 template <class Device> class Solids : public Part {
@@ -90,11 +42,11 @@ public:
         std::vector<int> thin;
         for (int s = 0; s < count_; ++s)
             if (states[size_t(s)].grace > 0) thin.push_back(s);
-        fill(thin_, thin);
+        thin_.fill(thin);
         spacing_ = scene.simulation.spacing;
-        fill(fields_, fieldsOf(scene, states));
+        fields_.fill(fieldsOf(scene, states));
         pointToFields(states, fields_.data());
-        fill(states_, states), fill(keys_, keys);
+        states_.fill(states), keys_.fill(keys);
         const Vec3 size = scene.domain.max - scene.domain.min;
         size_ = {real(size.x), real(size.y), real(size.z)};
         flow.solids = states_.data(), flow.solidCount = count_;
@@ -106,7 +58,7 @@ public:
         flow.fluid.keepPlace();
         if (wallsMove()) flow.walls.move();
         if (moves_) flow.walls.accelerate();
-        if (floats_) reserveLoads(flow.walls.slots());
+        if (floats_) reserveLoads();
     }
     int count() const { return count_; }
     bool moves() const { return moves_; }
@@ -149,9 +101,9 @@ public:
         if (!*whyFlowEndsAtWalls()) flow_.walls.continueFlow();
         const bool sticksNow = flow_.fluidSticks() && flow_.walls.carryVelocity();
         withCompiledKernel(scene.simulation.kernel, [&](auto kernel) {
-            using K = decltype(kernel);
-            findLoads_ = loadsBy<K>();
-            continueFlow_ = &Flow<Device>::template onWalls<ContinueFlowIntoWalls<K>>;
+            loads_.template choose<decltype(kernel)>();
+            continueFlow_ =
+                &Flow<Device>::template onWalls<ContinueFlowIntoWalls<decltype(kernel)>>;
         });
         if (anyThin()) screen();
         // A face slides at another speed or lets fluid slip, or walls are to know which way they
@@ -171,7 +123,7 @@ public:
         }
         if (!anyThin()) return;
         device_.forEach(count_,
-                        MeetWalls{states_.data(), count_, flow_.parameters, size_, spacing_});
+                        MeetWalls{states_.data(), count_, flow_.model.shared, size_, spacing_});
         flow_.search.findSides(flow_.view());
     }
     // The clock is at the step's end, what floats at its beginning.
@@ -210,28 +162,16 @@ public:
     }
 
     // What fluid does to each of their particles, and the sum over those of one solid.
-    void findLoads() {
-        const View v = flow_.view();
-        reserveLoads(v.walls.slots);
-        (this->*findLoads_)(v);
-        for (int s = 0; s < count_; ++s)
-            if (flow_.scene.solids[size_t(s)].floats()) pressFromGaps(v, s);
-    }
+    void findLoads() { loads_.find(home(), bodies_); }
     // A recorded step can't make room.
-    void reserveLoads(int slots) {
-        for (auto* field : {&pressureLoad_, &otherLoad_, &seen_, &seenAtRest_})
-            field->resize(vectorSize(slots));
-        gap_.resize(1), around_.resize(1);
-    }
-    SumSolidLoad sumOf(const View& v, int solid) {
-        return {v, {pressureLoad_.data()}, {otherLoad_.data()}, home(), solid};
-    }
+    void reserveLoads() { loads_.reserve(flow_.walls.slots()); }
+    SumSolidLoad sumOf(const View& v, int solid) { return loads_.sumOf(v, home(), solid); }
     // Each where the fluid is since the last step, and what fluid does to it.
     std::vector<SolidMeasurement> measure() {
         if (moves_) placeNow();
         if (count_ > 0) findLoads();
         const View v = flow_.view();
-        const std::vector<SolidState> states = download();
+        const std::vector<SolidState> states = states_.download();
         const double mass = particleMass(flow_.scene);
         auto scaled = [&](const double* a) { return mass * Vec3d{a[0], a[1], a[2]}; };
         std::vector<SolidMeasurement> out;
@@ -250,7 +190,7 @@ public:
     std::vector<SolidPose> poses() {
         if (moves_) placeNow();
         std::vector<SolidPose> out;
-        for (const SolidState& s : download())
+        for (const SolidState& s : states_.download())
             out.push_back(
                 {toVec3d(s.middle), {toVec3d(s.axis[0]), toVec3d(s.axis[1]), toVec3d(s.axis[2])}});
         return out;
@@ -259,7 +199,7 @@ public:
     int at(Vec3d point) {
         const Scene& scene = flow_.scene;
         const Vector<real> x = toReal(point - toDouble(scene.domain.min));
-        const std::vector<SolidState> states = download();
+        const std::vector<SolidState> states = states_.download();
         for (size_t s = 0; s < states.size(); ++s) {
             const Vector<real> arm = x - states[s].middle;
             const Vector<real> own{dot(arm, states[s].axis[0]), dot(arm, states[s].axis[1]),
@@ -278,45 +218,6 @@ public:
     }
 
 private:
-    using FindLoads = void (Solids::*)(const View&);
-
-    // By the terms that act on the fluid. (Corrected gradients have no opposite: their pressure is
-    // taken as it is without.)
-    template <class Kernel> FindLoads loadsBy() const {
-        auto chosen = [](auto terms) {
-            return FindLoads(
-                &Solids::template findLoadsBy<ComputeWallLoads<Kernel, decltype(terms)>>);
-        };
-        return withViscosityForm(flow_.scene, [&](auto form) {
-            if (isMultiFluid(flow_.scene))
-                return chosen(TermList<PressureForce, MixtureViscosity<form.value>>{});
-            if (factsOf(flow_.scene).solvesPressure)
-                return chooseTerms(flow_.scene, chosen, TermList<MirroredPressureForce>{},
-                                   Viscosities<form.value>{});
-            return chooseTerms(flow_.scene, chosen, TermList<PressureForce>{},
-                               Viscosities<form.value>{});
-        });
-    }
-    template <class Pass> void findLoadsBy(const View& v) {
-        device_.forEach(v.walls.slots, Pass{v,
-                                            {pressureLoad_.data()},
-                                            {otherLoad_.data()},
-                                            {seen_.data()},
-                                            {seenAtRest_.data()},
-                                            home()});
-    }
-    void pressFromGaps(const View& v, int solid) {
-        const BesideGround beside{v,
-                                  home(),
-                                  bodies_,
-                                  solid,
-                                  {pressureLoad_.data()},
-                                  {seen_.data()},
-                                  {seenAtRest_.data()}};
-        device_.reduce(v.walls.slots, FindGap{beside}, gap_.data());
-        device_.reduce(v.walls.slots, FindPressureAround{beside, gap_.data()}, around_.data());
-        device_.forEach(v.walls.slots, PressFromGaps{beside, gap_.data(), around_.data()});
-    }
     void moveTo(double stepsBack, double ahead) {
         device_.forEach(count_, MoveSolids{states_.data(), keys_.data(), flow_.clock.data(),
                                            stepsBack, ahead, bodies_, motions_});
@@ -335,21 +236,12 @@ private:
     }
     // As thin ones separate fluid and walls.
     void screen() {
-        const Screens screens{states_.data(),   thin_.data(),    int(thin_.size()),
-                              flow_.parameters, firstId_,        solidOf_.data(),
-                              {face_.data()},   {least_.data()}, spacing_};
+        const Screens screens{states_.data(),     thin_.data(),    int(thin_.size()),
+                              flow_.model.shared, firstId_,        solidOf_.data(),
+                              {face_.data()},     {least_.data()}, spacing_};
         screens_.resize(1);
         device_.upload(screens_.data(), &screens, 1);
         flow_.screens = screens_.data();
-    }
-    std::vector<SolidState> download() {
-        std::vector<SolidState> host(count_);
-        device_.download(host.data(), states_.data(), host.size());
-        return host;
-    }
-    template <class T> void fill(Buffer<T, Device>& buffer, const std::vector<T>& host) {
-        buffer.resize(host.size());
-        device_.upload(buffer.data(), host.data(), host.size());
     }
     void placeParticles(const Scene& scene, const std::vector<Vec3>& walls,
                         const std::vector<int>& sizes) {
@@ -380,8 +272,8 @@ private:
         std::vector<real> x(vectorSize(int(slots)));
         for (size_t i = 0; i < walls.size(); ++i)
             for (int k = 0; k < 3; ++k) x[vectorOffset(int(i), k)] = walls[i][k];
-        fill(solidOf_, solidOf), fill(position_, x), fill(mass_, mass), fill(area_, area);
-        fill(face_, face), fill(least_, least);
+        solidOf_.fill(solidOf), position_.fill(x), mass_.fill(mass), area_.fill(area);
+        face_.fill(face), least_.fill(least);
     }
     // Seen from any place that is nearer to their face than they are, or for one of the faces as
     // near; those that are beyond their solid from anywhere through it.
@@ -406,7 +298,6 @@ private:
 
     Flow<Device>& flow_;
     Device& device_;
-    FindLoads findLoads_ = nullptr;
     void (Flow<Device>::*continueFlow_)() = nullptr;
     const RigidBody* bodies_ = nullptr;
     const SolidMotion* motions_ = nullptr;
@@ -418,14 +309,12 @@ private:
     Buffer<MotionKey, Device> keys_{device_};
     Buffer<real, Device> fields_{device_};  // of meshes, one after the other
     Buffer<int, Device> solidOf_{device_};
-    Buffer<real, Device> position_{device_}, mass_{device_}, area_{device_}, pressureLoad_{device_},
-        otherLoad_{device_}, seen_{device_}, seenAtRest_{device_};
+    Buffer<real, Device> position_{device_}, mass_{device_}, area_{device_};
     Buffer<int, Device> thin_{device_};
     Buffer<real, Device> face_{device_}, least_{device_};
     Buffer<Screens, Device> screens_{device_};
     real spacing_ = 0;  // m
-    Buffer<Gap, Device> gap_{device_};
-    Buffer<PressureAround, Device> around_{device_};
+    SolidLoads<Device> loads_{flow_};
 };
 
 }  // namespace spindrift::LANES

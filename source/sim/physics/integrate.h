@@ -1,7 +1,7 @@
 // The passes that move particles in time.
 #pragma once
 
-#include "sim/physics/passes.h"
+#include "sim/particles/sort_passes.h"
 
 namespace spindrift::LANES {
 

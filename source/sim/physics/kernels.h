@@ -120,7 +120,7 @@ struct MuellerKernel {
 
 // What sums for Laplacians weigh differences with: (x.grad W) / d^2 as Morris 1997 does, hence g,
 // unless a kernel has its own. What a unit of it comes to is found on the lattice
-// (step_parameters.h).
+// (lattice_sums.h).
 template <class Kernel, class R> HD inline R viscous(R q) {
     if constexpr (requires { Kernel::viscous(q); })
         return Kernel::viscous(q);

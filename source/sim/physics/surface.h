@@ -3,8 +3,10 @@
 // fluid and 0 in air.
 #pragma once
 
-#include "sim/physics/kernels.h"
 #include "sim/neighbours/neighbours.h"
+#include "sim/physics/model.h"
+
+#include <cmath>
 
 namespace spindrift::LANES {
 
@@ -15,7 +17,18 @@ namespace spindrift::LANES {
 struct ComputeNormals {
     using Index = ICluster;
     using R = Real<ICluster>;
+    struct Parameters {
+        real scale;  // m gradientNorm / (rho0 R^5), 1/m
+        real least;  // 1/m: shorter ones belong to no surface; a tenth of that of a flat one
+        static Parameters of(const Model& m) {
+            const int d = m.dimensions();
+            return {real(m.mass / m.restDensity() * MeanKernel::gradient(d) * MeanKernel::norm(d) /
+                         std::pow(m.support(), d + 2)),
+                    real(0.15 / m.support())};
+        }
+    };
     View v;
+    Parameters own;
     HD void operator()(ICluster i) const {
         Vector<R> sum{0, 0, 0};
         const Vector<R> x = load(v.fluid.position, i);
@@ -29,8 +42,8 @@ struct ComputeNormals {
         forNeighbours<lists>(v, v.wallsNearFluid, i, x, [&](const auto& p, JCluster j) LANE_CALL {
             walls = addScaled(walls, load(v.walls.mass, j) * MeanKernel::g(p.q), p.r);
         });
-        const Vector<R> n = R(v.c.normalScale) * (fluid + total(walls));
-        const R length = squareRoot(dot(n, n)), least = v.c.leastNormal, zero = 0;
+        const Vector<R> n = R(own.scale) * (fluid + total(walls));
+        const R length = squareRoot(dot(n, n)), least = own.least, zero = 0;
         store(v.fluid.normal, i, select(length > least, R(1) / max(length, least), zero) * n);
         store(v.fluid.normalLength, i, length);
     }
@@ -64,7 +77,14 @@ struct TagSurface {
 struct LeaveOutSpray {
     using Index = ICluster;
     using R = Real<ICluster>;
+    struct Parameters {
+        real leastCompany;  // sum of w
+        static Parameters of(const Model& m) {
+            return {real(0.8 * latticeCorner<MeanKernel>(*m.scene))};
+        }
+    };
     View v;
+    Parameters own;
     HD void operator()(ICluster i) const {
         R sum = 0;
         forNeighbours<lists>(v, v.fluidNearFluid, i, load(v.fluid.position, i),
@@ -73,7 +93,7 @@ struct LeaveOutSpray {
     }
     HD void finish(ICluster i, R company) const {
         const R tag = load(v.fluid.normal, i).x;
-        store(v.fluid.normalLength, i, select(company > R(v.c.leastCompany), tag, R(0)));
+        store(v.fluid.normalLength, i, select(company > R(own.leastCompany), tag, R(0)));
     }
     // For lists with each pair once (HalfListSums).
     static constexpr Lists lists = Lists::Inner;
@@ -94,7 +114,14 @@ struct LeaveOutSpray {
 struct AddSurfaceTension {
     using Index = ICluster;
     using R = Real<ICluster>;
+    struct Parameters {
+        real tension;  // 2 sigma / rho0, m³/s²
+        static Parameters of(const Model& m) {
+            return {real(2 * m.scene->fluid.surfaceTension / m.restDensity())};
+        }
+    };
     View v;
+    Parameters own;
     HD void operator()(ICluster i) const {
         const Vector<R> n = load(v.fluid.normal, i);
         R turn = 0, along = 0;
@@ -113,8 +140,8 @@ struct AddSurfaceTension {
             2 * real(v.c.dimensions - 1) / v.c.support;  // a drop of half a support radius
         const R bent =
             R(real(1 - v.c.dimensions)) * total(turn) / max(total(along), R(real(1e-20)));
-        const R s = R(v.c.surfaceTension) * min(max(bent, R(-most)), R(most)) *
-                    load(v.fluid.normalLength, i);
+        const R s =
+            R(own.tension) * min(max(bent, R(-most)), R(most)) * load(v.fluid.normalLength, i);
         store(v.fluid.acceleration, i, addScaled(load(v.fluid.acceleration, i), s, n));
     }
 };

@@ -9,7 +9,8 @@
 // So an iteration asks walls for B_i alone.
 #pragma once
 
-#include "sim/physics/passes.h"
+#include "sim/neighbours/neighbours.h"
+#include "sim/physics/model.h"
 
 namespace spindrift::LANES {
 
@@ -33,7 +34,16 @@ template <class Pass, class Sum> HD inline void sumAround(const Pass& pass, IClu
 template <class Kernel, Lists which> struct SumGradients {
     using Index = ICluster;
     using R = Real<ICluster>;
+    struct Parameters {
+        real latticeSquares;  // kg²/m^8, sum_j (m grad W)^2 of a lattice point
+        static Parameters of(const Model& m) {
+            const double dx = m.scene->simulation.spacing;
+            return {real(m.sums.squares * dx * dx) * m.shared.gradientScale *
+                    m.shared.gradientScale};
+        }
+    };
     View v;
+    Parameters own;
     HD void operator()(ICluster i) const { sumAround(*this, i, Vector<R>{R(0), R(0), R(0)}); }
     static constexpr Lists lists = which;
     static constexpr uint8_t activeFrom = Active;
@@ -58,7 +68,7 @@ template <class Kernel, Lists which> struct SumGradients {
         });
         const R scale = v.c.gradientScale, zero = 0;
         const Vector<R> toWalls = scale * total(walls), all = scale * fluid + toWalls;
-        const R push = dot(all, all), mirror = dot(toWalls, all), squares = v.c.latticeSquares,
+        const R push = dot(all, all), mirror = dot(toWalls, all), squares = own.latticeSquares,
                 bears = mulAdd(R(real(0.5)), squares, push);
         const R mirrored = bears / max(zero - mirror, bears);
         store(v.fluid.wallGradient, i, toWalls);
@@ -73,10 +83,15 @@ template <class Kernel, Lists which> struct SumGradients {
 // Of an error of density, what a step takes out: of one in which the flow moves 0.4 h what is asked
 // for, of a shorter one less. (As much of each lets particles fly apart the faster the shorter
 // steps are.)
-HD inline real shareTakenOut(const StepParameters& c, const StepState& s) {
-    const real speed = max(max(real(s.speed), c.solidSpeed), c.leastSpeed);
-    return c.densityShare * min(real(s.dt) * speed / (real(0.2) * c.support), real(1));
-}
+struct ShareTakenOut {
+    real densityShare;
+    static ShareTakenOut of(const Model& m) { return {m.scene->solver.densityShare}; }
+    HD real now(const View& v) const {
+        const StepParameters& c = v.c;
+        const real speed = max(max(real(v.state->speed), c.solidSpeed), c.leastSpeed);
+        return densityShare * min(real(v.state->dt) * speed / (real(0.2) * c.support), real(1));
+    }
+};
 
 // b_i. Where fluid is torn it may come together again until it is as dense as at rest; gaps too
 // small to be seen close like any other error of density. (Closing at once, fluid at rest falls
@@ -85,7 +100,9 @@ template <class Kernel, Lists which> struct FindSource {
     using Index = ICluster;
     using R = Real<ICluster>;
     static constexpr double small = 0.02;  // share of rho0
+    using Parameters = ShareTakenOut;
     View v;
+    Parameters share;
     HD void operator()(ICluster i) const { sumAround(*this, i, R(0)); }
     static constexpr Lists lists = which;
     static constexpr uint8_t activeFrom = Active;
@@ -111,7 +128,7 @@ template <class Kernel, Lists which> struct FindSource {
                 torn = min(error + R(real(small)), R(0));
         store(field(), i,
               mulAdd(perRest * R(real(v.state->dt)), grown,
-                     mulAdd(R(shareTakenOut(v.c, *v.state)), error - torn, torn)));
+                     mulAdd(R(share.now(v)), error - torn, torn)));
         store(v.fluid.lastPressure, i, load(v.fluid.pressureOverRho2, i));
     }
 };
@@ -146,7 +163,14 @@ template <class Kernel, Lists which> struct AccelerateByPressure {
 template <class Kernel, Lists which> struct RelaxPressure {
     using Index = ICluster;
     using R = Real<ICluster>;
+    struct Parameters {
+        real relaxation;
+        static Parameters of(const Model& m) {
+            return {real(m.scene->solver.relaxation / m.largestEigenvalue)};
+        }
+    };
     View v;
+    Parameters own;
     HD void operator()(ICluster i) const { sumAround(*this, i, R(0)); }
     static constexpr Lists lists = which;
     static constexpr uint8_t activeFrom = Active;
@@ -164,7 +188,7 @@ template <class Kernel, Lists which> struct RelaxPressure {
         const R change =
             mulAdd(R(v.c.gradientScale), fluid, dot(input(i), load(v.fluid.wallGradient, i)));
         const R left = mulAdd(R(dt2 / v.c.restDensity), change, load(v.fluid.source, i));
-        const R step = R(v.c.relaxation * v.c.restDensity / dt2) / load(v.fluid.diagonal, i);
+        const R step = R(own.relaxation * v.c.restDensity / dt2) / load(v.fluid.diagonal, i);
         const R zero = 0, now = load(v.fluid.pressureOverRho2, i),
                 last = load(v.fluid.lastPressure, i), better = max(mulAdd(step, left, now), zero);
         store(v.fluid.lastPressure, i, better);
@@ -199,11 +223,12 @@ struct SolveProgress {
 struct BeginSolve {
     using Index = int;
     View v;
+    ShareTakenOut share;
     double densityError;
     SolveProgress* progress;
     HD void operator()(int) const {
         *progress = SolveProgress{};
-        progress->allowed = 3 * densityError * double(shareTakenOut(v.c, *v.state));
+        progress->allowed = 3 * densityError * double(share.now(v));
         v.state->momentum = 0;
     }
 };

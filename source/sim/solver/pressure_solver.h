@@ -14,8 +14,9 @@ public:
     }
 
     void begin() {
-        flow_.device.forEach(
-            1, BeginSolve{flow_.view(), double(flow_.scene.solver.densityError), progress_.data()});
+        flow_.device.forEach(1,
+                             BeginSolve{flow_.view(), ShareTakenOut::of(flow_.model),
+                                        double(flow_.scene.solver.densityError), progress_.data()});
     }
     void findError() {
         flow_.device.reduce(flow_.fluid.slots(), SumError{flow_.fluid.view()}, error_.data());

@@ -1,15 +1,17 @@
-// What every pass works on: fluid and walls on one device, how their neighbours are found, the
-// parameters of a step, and the clock.
+// What every pass works on: fluid and walls on one device, how their neighbours are found, what the
+// scene comes to, and the clock.
 #pragma once
 
 #include "device/buffer.h"
 #include "scene/formulation.h"
 #include "sim/physics/integrate.h"
+#include "sim/neighbours/grid.h"
 #include "sim/neighbours/neighbour_search.h"
 #include "sim/particles/particle_set.h"
 #include "sim/run_state.h"
 #include "sim/simulation.h"
-#include "sim/physics/step_parameters.h"
+#include "sim/physics/model.h"
+#include "sim/physics/time_step.h"
 
 #include <algorithm>
 #include <cmath>
@@ -45,7 +47,7 @@ template <class Device> struct Flow {
         View v{};
         v.fluid = fluid.view(), v.walls = walls.view();
         search.show(v, fluid.cellStart(), walls.cellStart());
-        v.c = parameters;
+        v.c = model.shared;
         v.c.stirCenter = toVector(stir.center - scene.domain.min);
         v.c.stirVelocity = toVector(stir.velocity);
         v.c.stirRadius = stir.radius, v.c.stirRate = stir.rate, v.c.stirPull = stir.pull;
@@ -56,12 +58,21 @@ template <class Device> struct Flow {
         return v;
     }
 
-    template <class P> void onFluid() { device.forEach(fluid.slots(), P{view()}); }
-    template <class P> void onWalls() { device.forEach(walls.slots(), P{view()}); }
+    // A pass is a struct with a View and operator()(index); it reads neighbours and writes its own
+    // particles only, never a field that it gathers. `Index` says how many particles one call works
+    // on. What it alone takes from the model are its `Parameters`.
+    template <class P> P pass() {
+        if constexpr (requires { typename P::Parameters; })
+            return {view(), P::Parameters::of(model)};
+        else
+            return {view()};
+    }
+    template <class P> void onFluid() { device.forEach(fluid.slots(), pass<P>()); }
+    template <class P> void onWalls() { device.forEach(walls.slots(), pass<P>()); }
     // Of lists that hold each pair once where they do, and of all neighbours otherwise.
     template <class P> void onPairsOrFluid() {
         if constexpr (NeighbourSearch<Device>::keepsLists)
-            if (usesHalfLists()) return search.overPairs(P{view()});
+            if (usesHalfLists()) return search.overPairs(pass<P>());
         onFluid<P>();
     }
     // Of active particles; forces on solids may be asked for at any time.
@@ -92,9 +103,9 @@ template <class Device> struct Flow {
     }
     // s, that a step can take.
     double longestStep() const {
-        return parameters.fixedStep > 0
-                   ? double(parameters.fixedStep)
-                   : double(min(acousticStep(parameters, 0), parameters.maxStep));
+        return model.shared.fixedStep > 0
+                   ? double(model.shared.fixedStep)
+                   : double(min(acousticStep(model.shared, 0), model.shared.maxStep));
     }
     // At the beginning those of the placement, else by the equation of state from the pressures.
     std::vector<float> densitiesOf(const RunState& state) const {
@@ -105,13 +116,13 @@ template <class Device> struct Flow {
                 scene.fluid.restDensity / restDensity(scene, scene.fluid.bodies[bodies[i]]);
         for (size_t i = 0; i < state.particles.pressures.size(); ++i) {
             const double power =
-                std::max(1 + double(state.particles.pressures[i]) / parameters.stiffness, 0.1);
+                std::max(1 + double(state.particles.pressures[i]) / model.shared.stiffness, 0.1);
             const float density =
-                float(parameters.restDensity * std::pow(power, 1.0 / parameters.gamma));
+                float(model.shared.restDensity * std::pow(power, 1.0 / model.shared.gamma));
             if (i == densities.size()) densities.push_back(density);
             if (densities[i] == 0) densities[i] = density;
         }
-        densities.resize(state.particles.positions.size(), float(parameters.restDensity));
+        densities.resize(state.particles.positions.size(), float(model.shared.restDensity));
         return densities;
     }
     // p / rho^2 that a solve begins with: at the beginning of a run those of the placement.
@@ -152,7 +163,7 @@ template <class Device> struct Flow {
     std::vector<Vec3> wallsAtHome;  // as in Placement
     std::vector<int> solidSizes;
     std::vector<uint16_t> bodies;  // of a mixture: which one each particle is of
-    StepParameters parameters{};
+    Model model{&scene};
     Stir stir;
     ParticleSet<Device> fluid{device, Kind::Fluid}, walls{device, Kind::Walls};
     NeighbourSearch<Device> search;
@@ -177,7 +188,7 @@ template <class Device> const char* whyViscosityIsNotWeighed(const Flow<Device>&
         return "only Monaghan's form of viscosity asks for it";
     if (scene.time.mode == TimeMode::Local) return "steps are local (time.mode)";
     const double nu = largestViscosity(scene) / scene.fluid.restDensity,
-                 reach = double(flow.parameters.soundSpeed) * double(flow.parameters.support),
+                 reach = double(flow.model.shared.soundSpeed) * double(flow.model.shared.support),
                  numerical = std::max(1e-3, scene.fluid.artificialViscosity / 16.0) * reach;
     return nu < numerical ? "viscosity is less than 1e-3 c R, or than the artificial one" : "";
 }

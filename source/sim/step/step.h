@@ -5,6 +5,9 @@
 #include "scene/formulation.h"
 #include "sim/parts/block_time_steps.h"
 #include "sim/solver/pressure_solver.h"
+#include "sim/physics/forces.h"
+#include "sim/physics/transport.h"
+#include "sim/physics/walls.h"
 #include "sim/step/flow.h"
 #include "sim/parts/part.h"
 #include "sim/step/plan.h"
@@ -192,7 +195,7 @@ private:
     }
     void chooseStep() {
         const bool needed =
-            keepsLists || shiftsParticles(scene_) || solves() || flow_.parameters.fixedStep <= 0;
+            keepsLists || shiftsParticles(scene_) || solves() || flow_.model.shared.fixedStep <= 0;
         plan_.add(
             "extremes",
             [&flow = flow_, parts = parts_] {

@@ -10,7 +10,7 @@ namespace spindrift::LANES {
 
 template <bool volume, class Device> void findExtremes(Flow<Device>& flow) {
     flow.device.reduce(flow.fluid.slots(),
-                       FindExtremes<volume>{flow.fluid.view(), flow.parameters.restDensity},
+                       FindExtremes<volume>{flow.fluid.view(), flow.model.shared.restDensity},
                        flow.extremes.data());
 }
 

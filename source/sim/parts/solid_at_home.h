@@ -1,0 +1,63 @@
+// Solids of a scene as passes see them, where they are at the beginning.
+#pragma once
+
+#include "scene/convex.h"
+#include "scene/lattice.h"
+#include "scene/motion.h"
+#include "scene/thin_solid.h"
+#include "sim/physics/model.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace spindrift::LANES {
+
+inline Vector<real> toReal(Vec3d a) { return {real(a.x), real(a.y), real(a.z)}; }
+inline Vec3d toVec3d(Vector<real> a) { return {double(a.x), double(a.y), double(a.z)}; }
+
+// A solid at its place in the scene, before it has moved.
+inline SolidState solidAtHome(const Scene& scene, const Solid& solid) {
+    const Convex shape = convexOf(solid, scene.simulation.dimensions);
+    Vec3d middle = shape.middle - toDouble(scene.domain.min);
+    if (scene.simulation.dimensions == 2)
+        middle.z = 0.5 * double(scene.domain.max.z - scene.domain.min.z);
+    SolidState s{};
+    s.grace = real(std::min(thinness(scene, solid) / 8, 0.05 * double(scene.simulation.spacing)));
+    s.hides = needsScreen(scene, solid), s.plate = faceOfPlate(scene, solid);
+    s.home = s.middle = s.middleBefore = toReal(middle);
+    s.axis[0] = {1, 0, 0}, s.axis[1] = {0, 1, 0}, s.axis[2] = {0, 0, 1};
+    for (int k = 0; k < 3; ++k) s.axisBefore[k] = s.axis[k];
+    s.spinAxis = int(solid.spinAxis);
+    s.planes = shape.planes;
+    for (int k = 0; k < shape.planes; ++k)
+        s.normal[k] = toReal(shape.normal[k]), s.offset[k] = real(shape.offset[k]);
+    s.slip = slipLength(solid.slip);
+    s.radius = real(shape.radius), s.across = toReal(shape.across);
+    s.reach = solid.shape == Shape::Plane ? real(1e9) : real(reachOf(solid));
+    return s;
+}
+
+// Of all meshes, one after the other, the distances from their surfaces.
+inline std::vector<real> fieldsOf(const Scene& scene, std::vector<SolidState>& states) {
+    std::vector<real> all;
+    for (size_t k = 0; k < states.size(); ++k) {
+        const Convex shape = convexOf(scene.solids[k], scene.simulation.dimensions);
+        if (!shape.mesh) continue;
+        const DistanceField field =
+            shape.mesh->field(shape.mesh->fieldSpacing(scene.simulation.spacing / shape.scale));
+        for (float distance : field.distances) all.push_back(real(shape.scale * double(distance)));
+        states[k].nodes = field.nodes;
+        states[k].fieldLow = toReal(shape.scale * field.low),
+        states[k].nodesPerMetre = real(1 / (shape.scale * field.spacing));
+    }
+    return all;
+}
+inline void pointToFields(std::vector<SolidState>& states, const real* fields) {
+    for (SolidState& s : states) {
+        if (s.nodes.x == 0) continue;
+        s.field = fields;
+        fields += size_t(s.nodes.x) * size_t(s.nodes.y) * size_t(s.nodes.z);
+    }
+}
+
+}  // namespace spindrift::LANES

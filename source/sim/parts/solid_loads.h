@@ -1,0 +1,71 @@
+// What fluid does to the particles of solids.
+#pragma once
+
+#include "scene/formulation.h"
+#include "sim/parts/solid_load_passes.h"
+#include "sim/step/flow.h"
+
+namespace spindrift::LANES {
+
+template <class Device> class SolidLoads {
+public:
+    explicit SolidLoads(Flow<Device>& flow) : flow_(flow) {}
+
+    // By the terms that act on the fluid. (Corrected gradients have no opposite: their pressure is
+    // taken as it is without.)
+    template <class Kernel> void choose() {
+        auto chosen = [this](auto terms) {
+            compute_ = &SolidLoads::template compute<ComputeWallLoads<Kernel, decltype(terms)>>;
+        };
+        const Scene& scene = flow_.scene;
+        withViscosityForm(scene, [&](auto form) {
+            if (isMultiFluid(scene))
+                return chosen(TermList<PressureForce, MixtureViscosity<form.value>>{});
+            if (factsOf(scene).solvesPressure)
+                return chooseTerms(scene, chosen, TermList<MirroredPressureForce>{},
+                                   Viscosities<form.value>{});
+            return chooseTerms(scene, chosen, TermList<PressureForce>{}, Viscosities<form.value>{});
+        });
+    }
+    void reserve(int slots) {
+        for (auto* field : {&pressure_, &other_, &seen_, &seenAtRest_})
+            field->resize(vectorSize(slots));
+        gap_.resize(1), around_.resize(1);
+    }
+    // `bodies`: of those that float.
+    void find(const WallsAtHome& home, const RigidBody* bodies) {
+        const View v = flow_.view();
+        reserve(v.walls.slots);
+        (this->*compute_)(v, home);
+        for (int s = 0; s < v.solidCount; ++s)
+            if (flow_.scene.solids[size_t(s)].floats())
+                pressFromGaps(
+                    {v, home, bodies, s, field(pressure_), field(seen_), field(seenAtRest_)});
+    }
+    SumSolidLoad sumOf(const View& v, const WallsAtHome& home, int solid) {
+        return {v, field(pressure_), field(other_), home, solid};
+    }
+
+private:
+    static VectorField field(const Buffer<real, Device>& b) { return VectorField{b.data()}; }
+    template <class Pass> void compute(const View& v, const WallsAtHome& home) {
+        flow_.device.forEach(v.walls.slots,
+                             Pass{v, Pass::Parameters::of(flow_.model), field(pressure_),
+                                  field(other_), field(seen_), field(seenAtRest_), home});
+    }
+    void pressFromGaps(const BesideGround& beside) {
+        const int slots = beside.v.walls.slots;
+        flow_.device.reduce(slots, FindGap{beside}, gap_.data());
+        flow_.device.reduce(slots, FindPressureAround{beside, gap_.data()}, around_.data());
+        flow_.device.forEach(slots, PressFromGaps{beside, gap_.data(), around_.data()});
+    }
+
+    Flow<Device>& flow_;
+    void (SolidLoads::*compute_)(const View&, const WallsAtHome&) = nullptr;
+    Buffer<real, Device> pressure_{flow_.device}, other_{flow_.device}, seen_{flow_.device},
+        seenAtRest_{flow_.device};
+    Buffer<Gap, Device> gap_{flow_.device};
+    Buffer<PressureAround, Device> around_{flow_.device};
+};
+
+}  // namespace spindrift::LANES
