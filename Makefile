@@ -4,14 +4,14 @@ BUILD ?= build
 ARGS ?=
 CMAKE_ARGS ?=
 
-.PHONY: run test build configure bench validate stress fuzz documents knobs program gpu-check gpu-bundle meson sanitize check-format check-headers format release install clean
+.PHONY: run test build configure bench validate stress fuzz documents knobs program gpu-check gpu-bundle meson sanitize check-format check-headers format release library install clean
 
 # Only what it needs: the tests are built by `make build`.
 run: program
 	@$(BUILD)/spindrift $(ARGS)
 
 test: build
-	ctest --test-dir $(BUILD) --output-on-failure
+	ctest --test-dir $(BUILD) --output-on-failure -j $$(nproc)
 
 # The first run on a machine is what later ones are compared with; rm .bench-baseline.json to begin anew.
 bench: program
@@ -31,7 +31,7 @@ fuzz: install
 	@command -v clang++ >/dev/null || { echo "make fuzz needs clang: apt-get install clang" >&2; exit 1; }
 	@mkdir -p build-fuzz/corpus
 	clang++ -std=c++20 -O1 -g1 -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=undefined -Isource \
-		source/core/*.cpp source/scene/*.cpp tests/fuzz/scene_fuzz.cpp $$(pkg-config --cflags --libs hdf5) -lfmt -lassimp -lgomp -o build-fuzz/scene_fuzz
+		$(filter-out %/system_plain.cpp,$(wildcard source/core/*.cpp)) source/scene/*.cpp tests/fuzz/scene_fuzz.cpp $$(pkg-config --cflags --libs hdf5) -lfmt -lassimp -lgomp -o build-fuzz/scene_fuzz
 	build-fuzz/scene_fuzz -max_len=6000 -timeout=10 -artifact_prefix=build-fuzz/ -dict=tests/fuzz/scene.dict \
 		$(or $(ARGS),-max_total_time=600 -print_final_stats=1 build-fuzz/corpus configs configs/test configs/validation)
 
@@ -69,6 +69,11 @@ release: install
 program: configure
 	@cmake --build $(BUILD) --target spindrift
 
+# What others build on, include/spindrift/spindrift.h and find_package(spindrift): make library PREFIX=/usr/local
+library: configure
+	@cmake --build $(BUILD) --target spindrift_sim
+	cmake --install $(BUILD) --prefix $(or $(PREFIX),$(BUILD)/installed) --component library
+
 # All checks and figures of the GPU, into docs/results/; without a GPU a dry run that writes nothing there. Programs that
 # are there already (gpu-bundle made them on a machine with a compiler): make gpu-check BUNDLE=folder
 gpu-check: $(if $(BUNDLE),,build)
@@ -92,12 +97,12 @@ meson: install
 	meson test -C build-meson --no-rebuild --print-errorlogs render example
 
 # AddressSanitizer and UndefinedBehaviorSanitizer, over all but the window and the flows that take minutes with the checks
-# in. Each instruction set takes minutes to compile: one that every machine has, and double precision, are enough.
+# in. One instruction set that every machine has, and double precision, are enough.
 LONG_FLOWS = HealthGuard.*:Rest.*:Plan.OfEachShippedScene:NeighbourLists.KeptListsMissNobody:Integrators.FlowsHaveTheirOrder:$\
 	Conservation.*:BlockTimeSteps.LetAPoolRest:*SumsAgreeAfterThreeHundredSteps*
 sanitize: install
 	@test -f build-sanitize/build.ninja || cmake -S . -B build-sanitize -G Ninja --log-level=WARNING \
-		-DSPINDRIFT_CUDA=OFF -DSPINDRIFT_SANITIZE=address,undefined -DSPINDRIFT_SIMD=sse
+		-DSPINDRIFT_CUDA=OFF -DSPINDRIFT_WINDOW=OFF -DSPINDRIFT_SANITIZE=address,undefined -DSPINDRIFT_SIMD=sse
 	@cmake --build build-sanitize --target unit_tests render_tests emulated_cuda_tests
 	LSAN_OPTIONS=suppressions=$(CURDIR)/tests/lsan.supp GTEST_FILTER="-$(LONG_FLOWS)" \
 		ctest --test-dir build-sanitize --output-on-failure -j 2 -R "^(unit|render|emulated_cuda)$$"

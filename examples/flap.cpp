@@ -1,10 +1,7 @@
 // A physics engine of one's own that moves an elastic object: here the engine is a hinge, which
-// swings a stiff flap to and fro in a tank of water. Prints what it costs to do so. Build: it is a
-// target of CMakeLists.txt. Run: build/flap_example [seconds]
-#include "core/error.h"
-#include "scene/json.h"
-#include "scene/sample_object.h"
-#include "sim/simulation.h"
+// swings a stiff flap to and fro in a tank of water. Prints what it costs to do so. Build: as
+// examples/CMakeLists.txt says, or with the program. Run: build/flap_example [seconds]
+#include <spindrift/spindrift.h>
 
 #include <cmath>
 #include <cstdio>

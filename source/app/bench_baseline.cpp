@@ -1,6 +1,7 @@
 #include "app/bench_baseline.h"
 
 #include "core/error.h"
+#include "core/system.h"
 
 #include <fmt/format.h>
 
@@ -10,14 +11,7 @@
 namespace spindrift {
 
 std::string machineName() {
-    std::ifstream cpus("/proc/cpuinfo");
-    std::string model = "unknown processor";
-    for (std::string line; std::getline(cpus, line);)
-        if (line.starts_with("model name")) {
-            model = line.substr(line.find(':') + 2);
-            break;
-        }
-    return fmt::format("{}, {} cores", model, std::thread::hardware_concurrency());
+    return fmt::format("{}, {} cores", os::processorName(), std::thread::hardware_concurrency());
 }
 
 BenchBaseline::BenchBaseline(const std::string& path) {

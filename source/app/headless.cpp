@@ -6,6 +6,7 @@
 #include "app/recorder.h"
 #include "core/error.h"
 #include "core/output_file.h"
+#include "core/system.h"
 #include "measure/checkpoint.h"
 #include "measure/health.h"
 #include "measure/poured.h"
@@ -19,7 +20,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <csignal>
 #include <filesystem>
 #include <optional>
 #include <set>
@@ -30,32 +30,6 @@ namespace {
 constexpr int DefaultSteps = 600;
 // Steps between two looks at the health of a run that measures nothing else.
 constexpr int HealthInterval = 20;
-
-// The signal that asked for an end, 0 = none.
-volatile std::sig_atomic_t stopSignal = 0;
-
-// While it lives SIGINT and SIGTERM are noted; a second one kills as usual. SIGPIPE is none.
-struct StopSignals {
-    StopSignals() {
-        stopSignal = 0;
-        struct sigaction action {};
-        action.sa_handler = [](int signal) { stopSignal = signal; };
-        action.sa_flags = int(SA_RESETHAND);
-        sigaction(SIGINT, &action, &before_[0]);
-        sigaction(SIGTERM, &action, &before_[1]);
-        // A reader that is gone is an error to be told, not the end without the other outputs.
-        action.sa_handler = SIG_IGN;
-        sigaction(SIGPIPE, &action, &before_[2]);
-    }
-    ~StopSignals() {
-        sigaction(SIGINT, &before_[0], nullptr);
-        sigaction(SIGTERM, &before_[1], nullptr);
-        sigaction(SIGPIPE, &before_[2], nullptr);
-    }
-
-private:
-    struct sigaction before_[3];
-};
 
 struct OutputFormat {
     std::string Output::*file;
@@ -150,7 +124,8 @@ public:
         try {
             judge();
             record();
-            while (!done() && trouble_.empty() && !isInvalid() && stopSignal == 0) advance();
+            while (!done() && trouble_.empty() && !isInvalid() && os::StopSignals::received() == 0)
+                advance();
             progress_.clear();
             finish();
         } catch (...) {  // a GPU was lost, a disk is full: what was measured until then is kept
@@ -161,9 +136,9 @@ public:
             } catch (const Error&) {}  // the first trouble is the one to tell
             throw;
         }
-        if (trouble_.empty() && stopSignal != 0) {
+        if (trouble_.empty() && os::StopSignals::received() != 0) {
             fmt::print(stderr, "spindrift: stopped by a signal after {} steps\n", steps_ - first_);
-            return 128 + stopSignal;
+            return 128 + os::StopSignals::received();
         }
         if (!trouble_.empty()) {
             fmt::print(stderr, "spindrift: {}\n", trouble_);
@@ -430,7 +405,7 @@ private:
     double written_ = -1;             // s simulated, of the checkpoint
     double evaluationsBefore_ = 0;    // this run
     double stepSeconds_ = 0;          // of wall time
-    StopSignals signals_;
+    os::StopSignals signals_;
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include "app/scene_choice.h"
 #include "core/error.h"
+#include "core/system.h"
 #include "core/output_file.h"
 #include "measure/chart.h"
 #include "measure/save_particles.h"
@@ -10,7 +11,6 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -122,9 +122,9 @@ Scene dropIntoPool() {
                 p.id = int(pool.size());
                 pool.push_back(p);
             }
-    const std::string file =
-        (std::filesystem::temp_directory_path() / fmt::format("spindrift_pool_{}.h5", getpid()))
-            .string();
+    const std::string file = (std::filesystem::temp_directory_path() /
+                              fmt::format("spindrift_pool_{}.h5", os::processId()))
+                                 .string();
     saveParticles(file, pool);
     Scene s = poolOf(Tile * Tiles);
     s.fluid.bodies.resize(2);

@@ -1,14 +1,15 @@
 #include "app/progress.h"
 
+#include "core/system.h"
+
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
 
 namespace spindrift {
 
-Progress::Progress(bool wanted) : active_(wanted && isatty(STDERR_FILENO)) {}
+Progress::Progress(bool wanted) : active_(wanted && os::errorsGoToTerminal()) {}
 
 bool Progress::due() const {
     return active_ && Clock::now() - last_ > std::chrono::milliseconds(100);

@@ -1,22 +1,16 @@
 #include "core/output_file.h"
 
 #include "core/error.h"
-
-#include <fcntl.h>
-#include <sys/socket.h>
-#include <sys/stat.h>
-#include <sys/un.h>
-#include <unistd.h>
+#include "core/system.h"
 
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <cerrno>
-#include <charconv>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <utility>
 
 namespace spindrift {
@@ -34,70 +28,48 @@ namespace fs = std::filesystem;
            "is the disk full? is the reader gone?");
 }
 
-// A file descriptor that is closed.
-struct Descriptor {
-    int number;
-    explicit Descriptor(int n) : number(n) {}
-    ~Descriptor() {
-        if (number >= 0) close(number);
-    }
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(const Descriptor&) = delete;
-    int release() { return std::exchange(number, -1); }
-};
-
 // What a path leads to.
 struct Target {
-    fs::path file;        // no symbolic link
-    int descriptor = -1;  // one that is open already: standard output, /dev/fd/3
-    bool exists = false;
-    struct stat status {};
-    bool streams() const { return descriptor >= 0 || (exists && !S_ISREG(status.st_mode)); }
+    fs::path file;    // no symbolic link
+    int number = -1;  // of one that is open already: standard output, /dev/fd/3
+    os::FileStatus status{};
+    bool exists() const { return status.kind != os::FileKind::Missing; }
+    bool streams() const {
+        return number >= 0 || (exists() && status.kind != os::FileKind::Regular);
+    }
 };
 
-// The number of a link such as /dev/fd/3, -1 of any other. To follow it would replace the file that
-// somebody else has opened.
-int descriptorOf(const fs::path& link) {
-    std::error_code none;
-    const std::string name = link.filename().string();
-    int number = -1;
-    const auto [end, failed] = std::from_chars(name.data(), name.data() + name.size(), number);
-    if (failed != std::errc() || end != name.data() + name.size()) return -1;
-    return fs::canonical(link.parent_path(), none) == fs::canonical("/proc/self/fd", none) ? number
-                                                                                           : -1;
-}
-
 Target findTarget(const std::string& path) {
-    if (path == "-") return {{}, STDOUT_FILENO};
+    if (path == "-") return {{}, os::StandardOutput};
     constexpr int MostLinks = 40;
     std::error_code none;
     Target target{path};
     for (int k = 0; k < MostLinks && fs::is_symlink(target.file, none); ++k) {
-        target.descriptor = descriptorOf(target.file);
-        if (target.descriptor >= 0) return target;
+        // To follow such a link would replace the file that somebody else has opened.
+        target.number = os::openNumberOf(target.file);
+        if (target.number >= 0) return target;
         target.file = target.file.parent_path() / fs::read_symlink(target.file, none);
     }
-    target.exists = stat(target.file.c_str(), &target.status) == 0;
-    if (!target.exists && errno != ENOENT) refuse(path, std::strerror(errno), "check the path");
+    target.status = os::statusOf(target.file);
+    if (target.status.kind == os::FileKind::Unknown)
+        refuse(path, std::strerror(errno), "check the path");
     return target;
 }
 
 // The same, refused where it is certain that it can't be written to.
 Target targetOf(const std::string& path) {
     const Target target = findTarget(path);
-    const mode_t mode = target.status.st_mode;
-    if (target.descriptor >= 0) {
-        const int flags = fcntl(target.descriptor, F_GETFL);
-        if (flags < 0 || (flags & O_ACCMODE) == O_RDONLY)
+    if (target.number >= 0) {
+        if (!os::isOpenForWriting(target.number))
             refuse(path, "it isn't open for writing", "redirect it to a file");
         return target;
     }
-    if (path.empty() || (target.exists && S_ISDIR(mode)))
+    if (path.empty() || target.status.kind == os::FileKind::Folder)
         refuse(path, "it is a folder", "name a file in it");
-    if (!target.exists) return target;
-    if (S_ISBLK(mode)) refuse(path, "it is a disk", "name a file on it");
+    if (!target.exists()) return target;
+    if (target.status.kind == os::FileKind::Disk) refuse(path, "it is a disk", "name a file on it");
     // Root may write to everything, but who took all rights to write away meant it.
-    if ((mode & (S_IWUSR | S_IWGRP | S_IWOTH)) == 0 || access(target.file.c_str(), W_OK) != 0)
+    if (!target.status.mayAnyoneWrite || !os::mayWrite(target.file))
         refuse(path, "it is read-only", "name another file, or give it the right to be written");
     return target;
 }
@@ -106,60 +78,21 @@ Target targetOf(const std::string& path) {
 std::string temporaryFor(const Target& target) {
     constexpr size_t Longest = 200;
     const std::string name = target.file.filename().string().substr(0, Longest) + "." +
-                             std::to_string(getpid()) + ".part";
+                             std::to_string(os::processId()) + ".part";
     return (target.file.parent_path() / name).string();
 }
 
-// Whether the file's contents have reached the disk, so that a rename can't come before them. It
-// gets the owner and the rights of the one that it replaces.
-bool finished(const std::string& temporary, const Target& target) {
-    const Descriptor file(open(temporary.c_str(), O_RDONLY | O_CLOEXEC));
-    if (file.number < 0) return false;
-    if (target.exists) {
-        // A file that was another user's becomes one's own where the system forbids to give it
-        // away.
-        [[maybe_unused]] const int given =
-            fchown(file.number, target.status.st_uid, target.status.st_gid);
-        fchmod(file.number, target.status.st_mode & 07777);
-    }
-    return fsync(file.number) == 0;
-}
-
-bool put(int file, const char* data, size_t size) {
-    while (size > 0) {
-        const ssize_t n = write(file, data, size);
-        if (n < 0 && errno == EINTR) continue;
-        if (n <= 0) return false;
-        data += n, size -= size_t(n);
-    }
-    return true;
-}
-
-int connectTo(const fs::path& socketFile) {
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    if (socketFile.string().size() >= sizeof address.sun_path) return errno = ENAMETOOLONG, -1;
-    std::strcpy(address.sun_path, socketFile.c_str());
-    Descriptor connection(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
-    if (connection.number < 0 ||
-        connect(connection.number, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0)
-        return -1;
-    return connection.release();
+void remove(const std::string& file) {
+    std::error_code none;
+    fs::remove(file, none);
 }
 
 // Waits for the reader of a FIFO.
-int openStream(const std::string& path, const Target& target) {
-    if (target.descriptor == STDOUT_FILENO) std::fflush(stdout);  // what was printed comes first
-    int file = -1;
-    do {
-        if (target.descriptor >= 0)
-            file = fcntl(target.descriptor, F_DUPFD_CLOEXEC, 0);
-        else if (S_ISSOCK(target.status.st_mode))
-            file = connectTo(target.file);
-        else
-            file = open(target.file.c_str(), O_WRONLY | O_NOCTTY | O_CLOEXEC);
-    } while (file < 0 && errno == EINTR);
-    if (file < 0) refuse(path, std::strerror(errno), "is there a reader?");
+os::OutFile openStream(const std::string& path, const Target& target) {
+    if (target.number == os::StandardOutput) std::fflush(stdout);  // what was printed comes first
+    os::OutFile file = target.number >= 0 ? os::OutFile::copyOf(target.number)
+                                          : os::OutFile::stream(target.file, target.status.kind);
+    if (!file) refuse(path, std::strerror(errno), "is there a reader?");
     return file;
 }
 
@@ -168,25 +101,20 @@ int openStream(const std::string& path, const Target& target) {
 // is not.)
 void writeThrough(const std::string& path, const Target& target,
                   const std::function<bool(const std::string&)>& write) {
-    std::error_code none;
-    std::string temporary = (fs::temp_directory_path(none) / "spindrift-XXXXXX").string();
-    const Descriptor whole(mkostemp(temporary.data(), O_CLOEXEC));
-    errno = whole.number < 0 ? errno : 0;
-    const bool written = whole.number >= 0 && write(temporary);
+    std::string temporary;
+    const os::OutFile made = os::OutFile::temporary(temporary);
+    if (!made) refuseIncomplete(path);
+    errno = 0;
+    const bool written = write(temporary);
     const int why = errno;
-    if (whole.number >= 0) unlink(temporary.c_str());
+    std::ifstream whole(temporary, std::ios::binary);
+    remove(temporary);
     errno = why;
     if (!written) refuseIncomplete(path);
-    const Descriptor stream(openStream(path, target));
+    os::OutFile stream = openStream(path, target);
     std::array<char, 1 << 16> block;
-    off_t at = 0;
-    for (ssize_t n; (n = pread(whole.number, block.data(), block.size(), at)) > 0; at += n)
-        if (!put(stream.number, block.data(), size_t(n))) refuseIncomplete(path);
-}
-
-bool writeWhole(const std::string& file, const std::string& text) {
-    const Descriptor out(open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
-    return out.number >= 0 && put(out.number, text.data(), text.size());
+    while (whole.read(block.data(), block.size()) || whole.gcount() > 0)
+        if (!stream.write(block.data(), size_t(whole.gcount()))) refuseIncomplete(path);
 }
 
 }  // namespace
@@ -195,10 +123,9 @@ void requireWritable(const std::string& path) {
     const Target target = targetOf(path);
     if (target.streams()) return;
     const std::string temporary = temporaryFor(target);
-    const Descriptor file(open(temporary.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666));
-    if (file.number < 0)
+    if (!os::OutFile::create(temporary))
         refuse(path, std::strerror(errno), "choose a folder that exists and that you may write to");
-    unlink(temporary.c_str());
+    remove(temporary);
 }
 
 void requireFormat(const std::string& path, const std::vector<std::string>& own) {
@@ -226,14 +153,14 @@ void requireFolder(const std::string& path) {
 
 std::string whereItLeads(const std::string& path) {
     const Target target = findTarget(path);
-    if (target.descriptor >= 0) return "descriptor " + std::to_string(target.descriptor);
-    if (target.exists && S_ISCHR(target.status.st_mode)) return "";
+    if (target.number >= 0) return "descriptor " + std::to_string(target.number);
+    if (target.status.kind == os::FileKind::Characters) return "";
     std::error_code none;
     return fs::weakly_canonical(fs::absolute(target.file), none).string();
 }
 
 bool isStandardOutput(const std::string& path) {
-    return !path.empty() && findTarget(path).descriptor == STDOUT_FILENO;
+    return !path.empty() && findTarget(path).number == os::StandardOutput;
 }
 
 bool isStream(const std::string& path) { return findTarget(path).streams(); }
@@ -244,11 +171,11 @@ void replaceFile(const std::string& path,
     if (target.streams()) return writeThrough(path, target, write);
     const std::string temporary = temporaryFor(target);
     errno = 0;
-    if (write(temporary) && finished(temporary, target) &&
-        rename(temporary.c_str(), target.file.c_str()) == 0)
+    if (write(temporary) && os::finish(temporary, target.status) &&
+        os::moveOver(temporary, target.file))
         return;
     const int why = errno;
-    unlink(temporary.c_str());
+    remove(temporary);
     requireWritable(path);  // knows better what is wrong
     errno = why;
     refuseIncomplete(path);
@@ -257,10 +184,11 @@ void replaceFile(const std::string& path,
 void writeText(const std::string& path, const std::string& text) {
     const Target target = targetOf(path);
     if (!target.streams())
-        return replaceFile(
-            path, [&](const std::string& temporary) { return writeWhole(temporary, text); });
-    const Descriptor stream(openStream(path, target));
-    if (!put(stream.number, text.data(), text.size())) refuseIncomplete(path);
+        return replaceFile(path, [&](const std::string& temporary) {
+            os::OutFile file = os::OutFile::create(temporary);
+            return file && file.write(text.data(), text.size());
+        });
+    if (!openStream(path, target).write(text.data(), text.size())) refuseIncomplete(path);
 }
 
 GrowingText::GrowingText(const std::string& path, const std::string& start)
@@ -271,16 +199,14 @@ GrowingText::GrowingText(const std::string& path, const std::string& start)
         return;
     }
     writeText(path, start);
-    file_ = open(targetOf(path).file.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
-    if (file_ < 0)
+    file_ = os::OutFile::append(targetOf(path).file.string());
+    if (!file_)
         refuse(path, std::strerror(errno), "choose a folder that exists and that you may write to");
     size_ = start.size();
 }
 
-GrowingText::~GrowingText() { close(file_); }
-
 void GrowingText::append(const std::string& text) {
-    if (!put(file_, text.data(), text.size())) {
+    if (!file_.write(text.data(), text.size())) {
         const int why = errno;
         shrink(size_);  // half a line is worse than none
         errno = why;
@@ -290,7 +216,7 @@ void GrowingText::append(const std::string& text) {
 }
 
 bool GrowingText::shrink(size_t size) {
-    if (streams_ || ftruncate(file_, off_t(size)) != 0) return false;
+    if (streams_ || !file_.resize(size)) return false;
     size_ = size;
     return true;
 }

@@ -3,6 +3,8 @@
 // stays until then. FIFOs, devices and sockets are written through. Symbolic links are followed and
 // stay. What is read-only is refused, also to root; so are disks. "-" is standard output, as
 // /dev/stdout is. What fails throws Error (Output), one line that names the path.
+#include "core/system.h"
+
 #include <cstddef>
 #include <functional>
 #include <string>
@@ -40,9 +42,6 @@ void writeText(const std::string& path, const std::string& text);
 class GrowingText {
 public:
     GrowingText(const std::string& path, const std::string& start);
-    ~GrowingText();
-    GrowingText(const GrowingText&) = delete;
-    GrowingText& operator=(const GrowingText&) = delete;
     void append(const std::string& text);
     // Forgets what is behind the first `size` bytes; false where it has been written through and
     // can't be taken back.
@@ -50,7 +49,7 @@ public:
 
 private:
     std::string path_;
-    int file_ = -1;
+    os::OutFile file_;
     bool streams_ = false;
     size_t size_ = 0;
 };

@@ -2,11 +2,10 @@
 // The host: its memory, its cores. Results never depend on the number of threads: loops write their
 // own elements only, the sort is stable, reductions run over fixed blocks in a fixed order.
 #include "core/pass_time.h"
+#include "core/system.h"
 #include "core/vertex.h"
 #include "device/buffer.h"
 #include "device/team.h"
-
-#include <sys/mman.h>
 
 #include <algorithm>
 #include <chrono>
@@ -34,7 +33,7 @@ public:
         const size_t bytes = (wanted + alignment - 1) / alignment * alignment;
         void* p = std::aligned_alloc(alignment, bytes);
         if (!p) throw std::bad_alloc();
-        if (alignment == page) madvise(p, bytes, MADV_HUGEPAGE);
+        if (alignment == page) os::wishLargePages(p, bytes);
         std::memset(p, 0, bytes);
         bytes_ += int64_t(n * sizeof(T));
         return static_cast<T*>(p);

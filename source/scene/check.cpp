@@ -2,6 +2,7 @@
 
 #include "scene/body_lattice.h"
 #include "core/error.h"
+#include "core/system.h"
 #include "scene/check_methods.h"
 #include "scene/check_bodies.h"
 #include "scene/convex.h"
@@ -15,11 +16,8 @@
 #include "scene/schema.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <string>
 
@@ -447,23 +445,6 @@ void checkProbe(const Scene& scene, size_t index) {
     }
 }
 
-// Bytes of memory that a new program can have. A container may be allowed less than the machine
-// has.
-int64_t availableMemory() {
-    int64_t available = int64_t(sysconf(_SC_PHYS_PAGES)) * sysconf(_SC_PAGESIZE);
-    std::ifstream meminfo("/proc/meminfo");
-    for (std::string key, unit; meminfo >> key;) {
-        int64_t kib = 0;
-        if (meminfo >> kib && key == "MemAvailable:") available = std::min(available, kib * 1024);
-        std::getline(meminfo, unit);
-    }
-    std::ifstream limitFile("/sys/fs/cgroup/memory.max"), usedFile("/sys/fs/cgroup/memory.current");
-    int64_t limit = 0, used = 0;  // "max" is no number: no limit
-    if (limitFile >> limit && usedFile >> used)
-        available = std::min(available, std::max<int64_t>(0, limit - used));
-    return available;
-}
-
 void checkCounts(const Scene& scene, ParticleCount count) {
     const std::string what = fmt::format(
         "{} fluid and {} boundary particles{}", count.fluid, count.walls,
@@ -476,7 +457,7 @@ void checkCounts(const Scene& scene, ParticleCount count) {
             fmt::format("simulation.spacing: {} are more than the {} that a run can have; {}", what,
                         MostParticles, remedy));
     constexpr double GiB = 1 << 30;
-    const int64_t needed = estimateMemory(scene, count), available = availableMemory();
+    const int64_t needed = estimateMemory(scene, count), available = os::freeMemory();
     if (needed > available)
         throw Error(
             Exit::Memory,

@@ -1,5 +1,5 @@
 #pragma once
-// All that the front end sees of the physics: a handful of functions, no templates, no CUDA.
+// All that the front end sees of the physics: some functions, no templates, no CUDA.
 #include "core/pass_time.h"
 #include "core/vec.h"
 #include "core/vertex.h"
@@ -42,8 +42,6 @@ struct SolidPose {
     Vec3d middle, axis[3];
 };
 
-// What a run says of itself. Energies in J, momentum in kg m/s, in two dimensions per metre of
-// depth; lengths in m; sums in double precision.
 // What the incompressible formulation's pressures took in the last step.
 struct SolveReport {
     int iterations = 0;
@@ -52,6 +50,8 @@ struct SolveReport {
     int64_t failures = 0;  // steps of the run whose pressures were not found
 };
 
+// What a run says of itself. Energies in J, momentum in kg m/s, in two dimensions per metre of
+// depth; lengths in m; sums in double precision.
 struct Measurement {
     int dimensions = 3;
     double time = 0;         // s
@@ -94,28 +94,39 @@ struct Stir {
     double speed() const { return length(velocity) + std::abs(pull) * radius; }
 };
 
-class Simulation {
+// A run in three interfaces: what moves it on, what it says of itself, and what it costs. A
+// function takes the one that it needs.
+class Steppable {
 public:
-    virtual ~Simulation() = default;
+    virtual ~Steppable() = default;
 
     // Advances by `count` time steps.
     virtual void step(int count = 1) = 0;
+    // Steps from now on end at this time (s) exactly instead of reaching beyond it, if they aren't
+    // of fixed length.
+    virtual void stopAt(double time) = 0;
+    // A GPU steps while the program goes on: returns when it is done.
+    virtual void wait() = 0;
     // Takes over live knobs (schema.h says which); restart knobs must be unchanged.
     virtual void apply(const Scene&) = 0;
     virtual void stir(const Stir&) = 0;
     // Until the next call the solid is pulled to where the mouse wants it, whatever moves it
-    // otherwise; none: let go. In local steps that is refused.
+    // otherwise; none: let go. In local steps that is refused. Throws Error (Usage) where there is
+    // no such solid.
     virtual void hold(const Hold&) = 0;
-    // Where each of the scene's solids is now.
-    virtual std::vector<SolidPose> solidPoses() = 0;
-    // The solid whose surface is within a spacing of a point (m, world coordinates), or -1.
-    virtual int solidAt(Vec3d point) = 0;
-    // From now on another engine moves the elastic objects (object_driver.h); null: they
-    // move by themselves again. Not owned.
+    // From now on another engine moves the elastic objects (object_driver.h); null: they move by
+    // themselves again. Not owned. Throws Error (Usage) where there are none, or its interval is
+    // not positive.
     virtual void drive(ObjectDriver*) = 0;
-    // Steps from now on end at this time (s) exactly instead of reaching beyond it, if they aren't
-    // of fixed length.
-    virtual void stopAt(double time) = 0;
+    // Goes on from a state of this run. Particles are then in the order, and neighbour lists of the
+    // age, that a new simulation of this state has: both go on with the same bits. Throws Error
+    // (Usage) where it has another number of particles.
+    virtual void restart(const RunState&) = 0;
+};
+
+class Readable {
+public:
+    virtual ~Readable() = default;
 
     // Fluid particles have ids [0, fluidCount), boundary particles [fluidCount, fluidCount +
     // wallCount).
@@ -125,26 +136,38 @@ public:
     virtual int solidParticleCount() const = 0;
     // Of elastic objects, in the order of sampleObjects().
     virtual int objectParticleCount() const = 0;
+
+    // What it comes to, which takes a look at all particles; and the time alone.
+    virtual Measurement measure() = 0;
+    virtual StepState clock() = 0;
+    // All fluid particles, in the order of their ids; one of them by its id in [0, fluidCount),
+    // Error (Usage) for any other.
+    virtual std::vector<Particle> particles() = 0;
+    virtual Particle particle(int id) = 0;
+    // Where each of the scene's solids is now.
+    virtual std::vector<SolidPose> solidPoses() = 0;
+    // The solid whose surface is within a spacing of a point (m, world coordinates), or -1.
+    virtual int solidAt(Vec3d point) = 0;
+    // Where the run stands: makeSimulation(scene, state) goes on from there, on any device.
+    virtual RunState state() = 0;
+
     // Fills out[id] for every fluid particle, and for the first `walls` of the boundary particles;
     // those of objects follow. `out` must hold fluidCount + walls + objectParticleCount vertices;
     // memory of cudaDevice() is written by a kernel, host memory of a GPU run by one copy. Returns
     // the range of the fluid's values. Boundary value: 1 of a solid, 0 of the domain's walls, of
     // objects 2 + their radius / that of a fluid particle.
     virtual Range writeVertices(VertexMemory out, ColorBy, int walls) = 0;
+    // The number of the CUDA device that steps, or hostMemory (-1).
+    virtual int cudaDevice() const = 0;
+};
 
-    // What it comes to, which takes a look at all particles; and the time alone.
-    virtual Measurement measure() = 0;
-    virtual StepState clock() = 0;
-    // All fluid particles, in the order of their ids; one of them by its id in [0, fluidCount).
-    virtual std::vector<Particle> particles() = 0;
-    virtual Particle particle(int id) = 0;
+class Profiled {
+public:
+    virtual ~Profiled() = default;
 
-    // Where the run stands: makeSimulation(scene, state) goes on from there, on any device.
-    virtual RunState state() = 0;
-    // Goes on from a state of this run. Particles are then in the order, and neighbour lists of the
-    // age, that a new simulation of this state has: both go on with the same bits.
-    virtual void restart(const RunState&) = 0;
-
+    // "CPU, 2 threads, AVX-512, float"
+    virtual std::string deviceName() const = 0;
+    virtual std::vector<PlanRow> plan() const = 0;
     // Time of each pass since the last resetTimes(). A CPU measures every step, a GPU the first
     // step after resetTimes().
     virtual std::vector<PassTime> times() = 0;
@@ -152,20 +175,14 @@ public:
     // Advances by `count` steps and returns the ms that each took: by the clock, on a GPU by events
     // on its stream.
     virtual std::vector<double> timeSteps(int count) = 0;
-    // A GPU steps while the program goes on: returns when it is done.
-    virtual void wait() = 0;
-
     // Of different fluid particles, in the last step, each once for what it gives to both; 0 where
     // there are no lists.
     virtual PairsSeen pairsSeen() = 0;
-    virtual std::vector<PlanRow> plan() const = 0;
     // Memory that particles, cells and neighbour lists take on the device.
     virtual int64_t bytes() const = 0;
-    // "CPU, 2 threads, AVX-512, float"
-    virtual std::string deviceName() const = 0;
-    // The number of the CUDA device that steps, or hostMemory (-1).
-    virtual int cudaDevice() const = 0;
 };
+
+class Simulation : public Steppable, public Readable, public Profiled {};
 
 // Chooses the backend by scene.compute, builds the particles, or goes on from a state. Throws Error
 // (NoDevice, Memory, Scene).

@@ -39,7 +39,8 @@ public:
     // --- steps ---
 
     void restart(const RunState& state) override {
-        CHECK(int(state.particles.positions.size()) == flow_.fluidCount);
+        require(int(state.particles.positions.size()) == flow_.fluidCount,
+                "restart: the state has another number of particles than the run");
         flow_.fluid.upload(state.particles.positions, state.particles.velocities,
                            flow_.densitiesOf(state), 0);
         if (factsOf(flow_.scene).solvesPressure) flow_.fluid.setPressures(flow_.pressuresOf(state));
@@ -66,13 +67,14 @@ public:
         refresh(flow_.scene);
     }
     void hold(const Hold& h) override {
-        CHECK(h.solid < solids_.count());
+        require(h.solid < solids_.count(), "hold: the scene has no solid of that number");
         if (h.solid >= 0) letSolidsMove();
         floating_.hold(h);
         refresh(flow_.scene);
     }
     void drive(ObjectDriver* driver) override {
-        CHECK(objects_.count() > 0 && (!driver || driver->interval() > 0));
+        require(objects_.count() > 0, "drive: the scene has no elastic objects");
+        require(!driver || driver->interval() > 0, "drive: the driver's interval must be above 0");
         objects_.drive(driver);
         refresh(flow_.scene);
     }
@@ -98,7 +100,7 @@ public:
 
     Range writeVertices(VertexMemory out, ColorBy by, int walls) override {
         if (out.device == flow_.device.index()) return writeVertices(out.data, by, walls);
-        CHECK(out.device == hostMemory);
+        require(out.device == hostMemory, "writeVertices: memory of a device that doesn't step");
         const int count = flow_.fluidCount + walls + objects_.count();
         staging_.resize(count);
         const Range range = writeVertices(staging_.data(), by, walls);
@@ -134,6 +136,7 @@ public:
         return flow_.fluid.download(flow_.fluidCount, flow_.scene.domain.min);
     }
     Particle particle(int id) override {
+        require(id >= 0 && id < flow_.fluidCount, "particle: the run has none of that number");
         return flow_.fluid.downloadOne(id, flow_.scene.domain.min);
     }
 
@@ -150,6 +153,9 @@ public:
     }
 
 private:
+    static void require(bool sound, const char* otherwise) {
+        if (!sound) throw Error(Exit::Usage, otherwise);
+    }
     auto parts() {
         return std::tie(tension_, mixing_, solids_, floating_, objects_, resistance_, blocks_);
     }

@@ -39,6 +39,9 @@ const std::vector<LibraryRule> LibraryRules = {
     {"SDL", {"SDL*"}, {"app/window/*"}},
     {"Dear ImGui", {"imgui*", "backends/imgui*"}, {"app/window/*"}},
     {"OpenGL and EGL", {"GL/*", "EGL/*", "KHR/*"}, {"render/*", "app/window/*"}},
+    {"POSIX",
+     {"unistd.h", "fcntl.h", "sys/*", "signal.h", "csignal", "dlfcn.h", "spawn.h"},
+     {"core/system*.cpp"}},
     {"CUDA",
      {"cuda*", "cub/*", "thrust/*", "cooperative_groups*"},
      {"device/*", "*.cu", "render/*interop*"}},
@@ -199,7 +202,8 @@ size_t functionLength(const std::vector<std::string>& lines, size_t k) {
     if (indent == std::string::npos || !line.ends_with("{") || line.find(')') == std::string::npos)
         return 0;
     static const std::regex other(
-        R"(^\s*(if|for|while|switch|else|do|namespace|struct|class|enum|union|try|return|case|\}|#).*)"
+        R"(^\s*(if|for|while|switch|else|do|try|return|case|\}|namespace|struct|class|enum)"
+        R"(|union).*)"
         R"(|.*\[[^\]]*\]\(.*|.*LANE_CALL.*)");
     if (std::regex_match(line, other)) return 0;
     for (size_t end = k + 1; end < lines.size(); ++end) {

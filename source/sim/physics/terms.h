@@ -36,10 +36,11 @@ template <ViscosityForm form> using Viscosities =
 template <class... A, class... B> TermList<A..., B...> joined(TermList<A...>*, TermList<B...>*);
 template <class A, class B> using Joined =
     decltype(joined(static_cast<A*>(nullptr), static_cast<B*>(nullptr)));
-using OptionalTerms = Joined<
-    Viscosities<ViscosityForm::Morris>,
-    TermList<LaminarViscosity<ViscosityForm::Monaghan>, MixtureViscosity<ViscosityForm::Morris>,
-             MixtureViscosity<ViscosityForm::Monaghan>, ClassicViscosity>>;
+using OptionalTerms =
+    Joined<TermList<LaminarViscosity<ViscosityForm::Monaghan>>,
+           Joined<Viscosities<ViscosityForm::Morris>,
+                  TermList<MixtureViscosity<ViscosityForm::Morris>,
+                           MixtureViscosity<ViscosityForm::Monaghan>, ClassicViscosity>>>;
 
 // Calls done with the form of viscosity that a scene has, as a type's value.
 template <ViscosityForm form> struct FormOf { static constexpr ViscosityForm value = form; };
