@@ -34,7 +34,12 @@ public:
         void* p = std::aligned_alloc(alignment, bytes);
         if (!p) throw std::bad_alloc();
         if (alignment == page) os::wishLargePages(p, bytes);
-        std::memset(p, 0, bytes);
+        // Touched first by all threads: on machines with several memories pages are spread.
+        const size_t piece = alignment == page ? page : bytes;
+        const int64_t pieces = int64_t(bytes / piece);
+#pragma omp parallel for schedule(static) num_threads(team_.size()) if (pieces > 1)
+        for (int64_t k = 0; k < pieces; ++k)
+            std::memset(static_cast<char*>(p) + size_t(k) * piece, 0, piece);
         bytes_ += int64_t(n * sizeof(T));
         return static_cast<T*>(p);
     }

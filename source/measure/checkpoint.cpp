@@ -72,17 +72,19 @@ std::vector<Vec3> readVectors(hid_t file, const char* name) {
 std::vector<double> numbersOf(const std::vector<SolidMotion>& solids) {
     std::vector<double> out;
     for (const SolidMotion& m : solids) {
-        for (const Vec3d& v : {m.place, m.velocity, m.angularMomentum})
+        for (const Vec3d& v : {m.centre + m.dragged, m.velocity, m.angularMomentum})
             out.insert(out.end(), {v.x, v.y, v.z});
-        out.insert(out.end(), m.turn, m.turn + 4);
+        out.insert(out.end(), {m.turn.w, m.turn.x, m.turn.y, m.turn.z});
     }
     return out;
 }
-std::vector<SolidMotion> motionsOf(const std::vector<double>& numbers) {
+std::vector<SolidMotion> motionsOf(const Scene& scene, const std::vector<double>& numbers) {
     std::vector<SolidMotion> out;
     for (auto n = numbers.begin(); n != numbers.end(); n += 13) {
-        SolidMotion m{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, {}, {n[6], n[7], n[8]}};
-        std::copy(n + 9, n + 13, m.turn);
+        SolidMotion m;
+        (scene.solids[out.size()].floats() ? m.centre : m.dragged) = {n[0], n[1], n[2]};
+        m.velocity = {n[3], n[4], n[5]}, m.angularMomentum = {n[6], n[7], n[8]};
+        m.turn = {n[9], n[10], n[11], n[12]};
         out.push_back(m);
     }
     return out;
@@ -176,7 +178,7 @@ void readSolids(hid_t file, Checkpoint& c) {
     if (!c.scene.solids.empty()) readSolidSizes(file, c);
     const size_t solids = c.scene.solids.size();
     if (H5Aexists(file, "solid motions") > 0)
-        c.state.solids = motionsOf(readNumbers(file, "solid motions", 13 * solids));
+        c.state.solids = motionsOf(c.scene, readNumbers(file, "solid motions", 13 * solids));
     if (H5Aexists(file, "keyframes left") > 0) {  // none in older files
         const std::vector<double> left = readNumbers(file, "keyframes left", solids);
         for (size_t k = 0; k < c.state.solids.size(); ++k) c.state.solids[k].left = left[k];

@@ -214,9 +214,9 @@ Placement placeParticles(const Scene& scene) {
     if (!isMultiFluid(scene)) out.bodies = {};
     if (!out.densities.empty()) out.densities.resize(out.positions.size());
     for (const Solid& solid : scene.solids) {
-        const std::vector<Vec3> points = boundaryOf(scene, solid).positions;
-        out.walls.insert(out.walls.end(), points.begin(), points.end());
-        out.solidSizes.push_back(int(points.size()));
+        const SolidSample& sample = out.solids.emplace_back(boundaryOf(scene, solid));
+        out.walls.insert(out.walls.end(), sample.positions.begin(), sample.positions.end());
+        out.solidSizes.push_back(int(sample.positions.size()));
     }
     if (scene.walls.kind == WallKind::Particles) placeShell(wallShell(scene), out.walls);
     return out;

@@ -1,6 +1,7 @@
 #pragma once
 // Shapes of a scene -> particle positions.
 #include "core/vec.h"
+#include "scene/sample_solid.h"
 #include "scene/scene.h"
 
 #include <cstdint>
@@ -17,7 +18,8 @@ struct Placement {
     std::vector<int> solidSizes;
     std::vector<float>
         densities{};  // kg/m³, 0 where the pressure says; none at all where no file had any
-    std::vector<uint16_t> bodies{};  // of a mixture: which body each particle is of
+    std::vector<uint16_t> bodies{};     // of a mixture: which body each particle is of
+    std::vector<SolidSample> solids{};  // those of walls, at the beginning of a run
 };
 
 // Where the fluid is at the start, m from the domain's corner, and how fast, m/s.

@@ -50,7 +50,7 @@ public:
         flow_.setClock(clock);
         blocks_.wake();
         if (std::any_of(state.solids.begin(), state.solids.end(),
-                        [](const SolidMotion& m) { return m.place != Vec3d{}; }))
+                        [](const SolidMotion& m) { return m.dragged != Vec3d{}; }))
             letSolidsMove();
         if (solids_.moves()) flow_.uploadWalls();
         forEachPart(parts(), [&](auto& part) { part.restart(state); });

@@ -194,7 +194,7 @@ TEST(Floating, TopPrecesses) {
     const double share = dot(axis, along);
     const Vec3d expected = share * along + cross(along, axis);  // Rodrigues, by 90 degrees
     const SolidMotion now = simulation->state().solids[0];
-    const double w = now.turn[0], x = now.turn[1], y = now.turn[2], z = now.turn[3];
+    const auto [w, x, y, z] = now.turn;
     EXPECT_LT(
         length(Vec3d{2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)} - expected),
         0.01);

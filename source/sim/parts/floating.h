@@ -18,8 +18,9 @@ public:
     Floating(Flow<Device>& flow, Solids<Device>& solids)
         : flow_(flow), device_(flow.device), solids_(solids) {
         for (const Solid& solid : flow.scene.solids) {
-            onHost_.push_back(bodyOf(flow.scene, solid));
-            faces_.push_back(solid.floats() ? ballsOfAFace(flow.scene, solid) : 1);
+            const SolidSample& sample = flow.solidSamples[onHost_.size()];
+            onHost_.push_back(bodyOf(flow.scene, solid, sample));
+            faces_.push_back(solid.floats() ? ballsOfAFace(flow.scene, solid, sample) : 1);
         }
         loads_.resize(onHost_.size()), touches_.resize(onHost_.size()), also_.resize(1);
         room_.resize(1);
@@ -177,15 +178,14 @@ private:
         return std::max(massOf(scene, solid).mass, 0.1 * double(solid.density) * along);
     }
     static real deepestBall(const Scene& scene) { return real(0.75) * scene.simulation.spacing; }
-    static RigidBody bodyOf(const Scene& scene, const Solid& solid) {
+    static RigidBody bodyOf(const Scene& scene, const Solid& solid, const SolidSample& sample) {
         const real hard = real(1e30);
         RigidBody body{0, {}, {{}, {}, {}}, hard, hard, solid.friction, deepestBall(scene)};
         if (!solid.floats()) return body;
         const Mass mass = massOf(scene, solid);
         body.mass = mass.mass, body.centre = mass.centre;
         double area = 0;  // m^2
-        for (const Vec3d& a : surfaceAreas(scene, solid, boundaryOf(scene, solid)))
-            area += length(a);
+        for (const Vec3d& a : surfaceAreas(scene, solid, sample)) area += length(a);
         const double layer =
             double(scene.fluid.restDensity) * double(scene.simulation.spacing) * area;
         body.told = body.mass / (body.mass + layer);
@@ -193,10 +193,9 @@ private:
         return body;
     }
     // As if it were a cube.
-    static double ballsOfAFace(const Scene& scene, const Solid& solid) {
+    static double ballsOfAFace(const Scene& scene, const Solid& solid, const SolidSample& sample) {
         const Convex shape = convexOf(solid, scene.simulation.dimensions);
         double outermost = 0;
-        const SolidSample sample = boundaryOf(scene, solid);
         for (size_t i = 0; i < sample.positions.size(); ++i) {
             const Vec3d at = toDouble(sample.positions[i] + scene.domain.min) - shape.middle;
             if (sample.faces.empty())
@@ -210,7 +209,7 @@ private:
     static SolidMotion motionAtHome(const Scene& scene, const Solid& solid, const RigidBody& body) {
         SolidMotion m;
         const SolidState home = solidAtHome(scene, solid);
-        m.place = Vec3d{home.middle.x, home.middle.y, home.middle.z} + body.centre;
+        m.centre = Vec3d{home.middle.x, home.middle.y, home.middle.z} + body.centre;
         m.velocity = toDouble(solid.velocity);
         const int axis = int(solid.spinAxis);
         m.angularMomentum =

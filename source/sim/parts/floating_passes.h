@@ -247,7 +247,7 @@ struct MoveFloating {
         m.spinRate = m.spinRate + body.told * (spinRate - m.spinRate);
         m.velocity = m.velocity + (kick * dt / body.mass) * w.force;
         m.angularMomentum = m.angularMomentum + (kick * dt) * w.torque;
-        m.place = wrapped(m.place + (drift * dt) * m.velocity);
+        m.centre = wrapped(m.centre + (drift * dt) * m.velocity);
         turnBy(m.turn, (drift * dt) * spinOf(body, m));
     }
     // N
@@ -300,7 +300,7 @@ struct MoveFloating {
         if (v.c.dimensions == 2) m.velocity.z = 0;
         const Vec3d change = (1 / (kick * dt)) * (m.velocity - before);
         m.acceleration = m.acceleration + 0.25 * (change - m.acceleration);
-        m.place = m.place + (drift * dt) * m.velocity;
+        m.dragged = m.dragged + (drift * dt) * m.velocity;
     }
     // From one velocity towards another, against the fluid, N, and the objects in its way.
     HD Vec3d pushed(Vec3d before, Vec3d wanted, Vec3d fluid) const {

@@ -93,19 +93,19 @@ struct Room {
 };
 
 // The quaternion of a small turn, radians, after another one; of length 1.
-HD inline void turnBy(double (&q)[4], Vec3d angle) {
+HD inline void turnBy(Quaternion& q, Vec3d angle) {
     const double size = sqrt(dot(angle, angle)), half = 0.5 * size,
                  share = size > 1e-12 ? sin(half) / size : 0.5, c = cos(half);
-    const Vec3d a = share * angle, b{q[1], q[2], q[3]};
-    const Vec3d v = c * b + q[0] * a + cross(a, b);
-    const double w = c * q[0] - dot(a, b), length = sqrt(w * w + dot(v, v));
-    q[0] = w / length, q[1] = v.x / length, q[2] = v.y / length, q[3] = v.z / length;
+    const Vec3d a = share * angle, b{q.x, q.y, q.z};
+    const Vec3d v = c * b + q.w * a + cross(a, b);
+    const double w = c * q.w - dot(a, b), length = sqrt(w * w + dot(v, v));
+    q = {w / length, v.x / length, v.y / length, v.z / length};
 }
 // From its own axes into space, and back.
 struct Turn {
     Vec3d axis[3];
-    HD explicit Turn(const double (&q)[4]) {
-        const double w = q[0], x = q[1], y = q[2], z = q[3];
+    HD explicit Turn(const Quaternion& q) {
+        const double w = q.w, x = q.x, y = q.y, z = q.z;
         axis[0] = {1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)};
         axis[1] = {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)};
         axis[2] = {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)};
@@ -130,7 +130,7 @@ HD inline void placeFloating(SolidState& s, const RigidBody& body, SolidMotion m
     turnBy(m.turn, ahead * spin);
     const Turn turn(m.turn);
     auto narrow = [](Vec3d a) { return Vector<real>{real(a.x), real(a.y), real(a.z)}; };
-    const Vec3d arm = -1.0 * turn.out(body.centre), centre = m.place + ahead * m.velocity;
+    const Vec3d arm = -1.0 * turn.out(body.centre), centre = m.centre + ahead * m.velocity;
     for (int k = 0; k < 3; ++k) s.axis[k] = narrow(turn.axis[k]);
     s.centreOfMass = narrow(centre);
     s.middle = narrow(centre + arm);

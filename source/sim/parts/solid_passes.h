@@ -56,8 +56,8 @@ struct MoveSolids {
         addDragged(s, motions[i], ahead * state->dt);
     }
     HD static void addDragged(SolidState& s, const SolidMotion& m, double ahead) {
-        const Vec3d place = m.place + ahead * m.velocity;
-        s.middle = s.middle + Vector<real>{real(place.x), real(place.y), real(place.z)};
+        const Vec3d away = m.dragged + ahead * m.velocity;
+        s.middle = s.middle + Vector<real>{real(away.x), real(away.y), real(away.z)};
         s.velocity =
             s.velocity + Vector<real>{real(m.velocity.x), real(m.velocity.y), real(m.velocity.z)};
         s.acceleration =

@@ -256,7 +256,7 @@ private:
         const float share = hasOwnVolume(scene) ? float(cell / particleVolume(scene)) : 1;
         size_t end = 0;
         for (size_t s = 0; s < scene.solids.size(); ++s) {
-            const SolidSample sample = boundaryOf(scene, scene.solids[s]);
+            const SolidSample& sample = flow_.solidSamples[s];
             const std::vector<float>& volumes = sample.volumes;
             if (sizes.size() <= s || volumes.size() != size_t(sizes[s]))
                 throw Error(Exit::Scene,

@@ -4,6 +4,7 @@
 
 #include "device/buffer.h"
 #include "scene/formulation.h"
+#include "scene/thin_solid.h"
 #include "sim/physics/integrate.h"
 #include "sim/neighbours/grid.h"
 #include "sim/neighbours/neighbour_search.h"
@@ -31,7 +32,11 @@ template <class Device> struct Flow {
           wallsAtHome(state.particles.walls),
           solidSizes(state.particles.solidSizes),
           bodies(state.particles.bodies),
+          solidSamples(state.particles.solids),
           search(device, makeGrid(s, size_t(fluidCount) + size_t(wallCount))) {
+        if (solidSamples.empty())  // the run goes on from a checkpoint
+            for (const Solid& solid : scene.solids)
+                solidSamples.push_back(boundaryOf(scene, solid));
         if (carriesDensity(scene)) fluid.carryDensity();
         if (shiftsParticles(scene)) fluid.shift(), walls.haveDensity();
         if (factsOf(scene).solvesPressure) fluid.solvePressure();
@@ -163,6 +168,7 @@ template <class Device> struct Flow {
     std::vector<Vec3> wallsAtHome;  // as in Placement
     std::vector<int> solidSizes;
     std::vector<uint16_t> bodies;  // of a mixture: which one each particle is of
+    std::vector<SolidSample> solidSamples;
     Model model{&scene};
     Stir stir;
     ParticleSet<Device> fluid{device, Kind::Fluid}, walls{device, Kind::Walls};
