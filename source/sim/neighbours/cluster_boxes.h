@@ -3,7 +3,6 @@
 
 #include "core/error.h"
 #include "core/pass_time.h"
-#include "device/omp.h"
 #include "sim/neighbours/screens.h"
 
 #include <algorithm>
@@ -25,7 +24,7 @@ struct ClusterBoxes {
     std::vector<uint8_t> sides;  // cluster by cluster, of each thin solid; empty: there is none
     int screens = 0;
 
-    void compute(Omp& device, const Particles& p) {
+    template <class Device> void compute(Device& device, const Particles& p) {
         const int clusters = p.slots / clusterSize;
         for (int k = 0; k < 3; ++k) {
             low[k].resize(clusters + width);  // tests read whole registers
@@ -35,7 +34,8 @@ struct ClusterBoxes {
             for (int c = begin; c < end; ++c) computeOne(p, c);
         });
     }
-    void findSides(Omp& device, const Particles& p, const Screens* all, float reach, bool walls) {
+    template <class Device> void findSides(Device& device, const Particles& p, const Screens* all,
+                                           float reach, bool walls) {
         const int clusters = p.slots / clusterSize;
         screens = all->count;
         sides.resize(size_t(clusters) * size_t(screens));

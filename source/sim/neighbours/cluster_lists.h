@@ -6,7 +6,6 @@
 
 #include "core/error.h"
 #include "core/pass_time.h"
-#include "device/omp.h"
 #include "sim/neighbours/cluster_boxes.h"
 
 #include <algorithm>
@@ -60,9 +59,10 @@ public:
     // Makes the lists that are wanted and not there: of all clusters, or with `active` of those of
     // which it says more than Inactive. Boxes and cells are those of when the last ones were
     // forgotten.
-    void build(Omp& device, const Grid& grid, float reach, const ClusterBoxes& own,
-               const uint8_t* active, const ClusterBoxes& other, const int* otherCellStart,
-               bool once = false, const Sight& sight = {}) {
+    template <class Device> void build(Device& device, const Grid& grid, float reach,
+                                       const ClusterBoxes& own, const uint8_t* active,
+                                       const ClusterBoxes& other, const int* otherCellStart,
+                                       bool once = false, const Sight& sight = {}) {
         if (complete_ || otherCellStart[cellCount(grid)] == 0) return;
         complete_ = !active;
         const Search search{grid,

@@ -29,7 +29,8 @@ public:
     // Adds up pass.of(pair, pass.input(i), pass.input(j)), what a pair gives to i, and
     // Pass::opposite says whether j gets that or its opposite; pass.finish(i) goes on from the sum,
     // which is then in pass.field().
-    template <class Pass> void run(Omp& device, const ClusterLists& lists, const Pass& pass) {
+    template <class Device, class Pass>
+    void run(Device& device, const ClusterLists& lists, const Pass& pass) {
         const int clusters = pass.v.fluid.slots / clusterSize;
         constexpr int numbers = clusterSize * stride<decltype(pass.field())>;  // a cluster
         const int block = std::max(256, (clusters + mostBlocks - 1) / mostBlocks),
