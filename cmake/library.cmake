@@ -1,5 +1,5 @@
-# What others build on: libspindrift.a with its headers, found by find_package(spindrift). Installed by
-# cmake --install build --prefix FOLDER --component library
+# What others build on: libspindrift.a with its headers, found by find_package(spindrift).
+# Installed by cmake --install build --prefix FOLDER --component library
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -20,15 +20,19 @@ set(package ${CMAKE_INSTALL_LIBDIR}/cmake/spindrift)
 install(TARGETS spindrift_sim EXPORT spindriftTargets ARCHIVE COMPONENT library)
 install(EXPORT spindriftTargets NAMESPACE spindrift:: DESTINATION ${package} COMPONENT library)
 install(DIRECTORY include/spindrift DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT library)
-# spindrift.h and what it includes: a program that includes it is compiled against the installed copy in CI.
+# spindrift.h and what it includes: CI compiles a program against the installed copy.
 foreach(header
     core/color_map.h core/error.h core/pass_time.h core/vec.h core/vertex.h
     scene/check.h scene/json.h scene/particles.h scene/sample_object.h scene/sample_solid.h scene/scene.h
-    sim/object_driver.h sim/object_state.h sim/run_state.h sim/simulation.h sim/solid_motion.h sim/step_state.h)
+    sim/object_driver.h sim/object_state.h sim/run_state.h sim/simulation.h sim/solid_motion.h
+    sim/step_state.h)
   cmake_path(GET header PARENT_PATH folder)
-  install(FILES source/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/spindrift/${folder} COMPONENT library)
+  install(FILES source/${header} COMPONENT library
+    DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/spindrift/${folder})
 endforeach()
-configure_package_config_file(cmake/spindriftConfig.cmake.in spindriftConfig.cmake INSTALL_DESTINATION ${package})
+configure_package_config_file(cmake/spindriftConfig.cmake.in spindriftConfig.cmake
+  INSTALL_DESTINATION ${package})
 write_basic_package_version_file(spindriftConfigVersion.cmake COMPATIBILITY SameMinorVersion)
-install(FILES ${CMAKE_BINARY_DIR}/spindriftConfig.cmake ${CMAKE_BINARY_DIR}/spindriftConfigVersion.cmake
+install(FILES
+  ${CMAKE_BINARY_DIR}/spindriftConfig.cmake ${CMAKE_BINARY_DIR}/spindriftConfigVersion.cmake
   DESTINATION ${package} COMPONENT library)

@@ -1,5 +1,6 @@
 #!/bin/sh
-# The library as others use it: installed into an empty folder, found there by a project of its own, which runs.
+# The library as others use it: installed into an empty folder, found there by a project of its
+# own, which runs.
 #   installed_example.sh SOURCE BUILD
 set -eu
 prefix=$2/installed

@@ -45,7 +45,7 @@ Target findTarget(const std::string& path) {
     std::error_code none;
     Target target{path};
     for (int k = 0; k < MostLinks && fs::is_symlink(target.file, none); ++k) {
-        // To follow such a link would replace the file that somebody else has opened.
+        // Such a link is written through: the file behind it is open elsewhere, and stays.
         target.number = os::openNumberOf(target.file);
         if (target.number >= 0) return target;
         target.file = target.file.parent_path() / fs::read_symlink(target.file, none);
