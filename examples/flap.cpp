@@ -92,11 +92,11 @@ int main(int count, char** arguments) {
         const double seconds = count > 1 ? std::atof(arguments[1]) : 1.2;
         if (!(seconds > 0 && seconds <= 100))
             throw Error(
-                Exit::Usage,
+                Failure::Usage,
                 "flap_example: seconds must lie above 0 and up to 100, e.g. flap_example 2");
         run(seconds);
     } catch (const Error& error) {
         std::fprintf(stderr, "%s\n", error.what());
-        return int(error.exit);
+        return 1;
     }
 }

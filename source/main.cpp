@@ -1,5 +1,5 @@
 #include "app/command_line.h"
-#include "core/error.h"
+#include "app/exit_code.h"
 #include "core/system.h"
 
 #include <cstdio>
@@ -23,7 +23,7 @@ int main(int argc, char** argv) {
         return spindrift::runCommandLine(argc, argv);
     } catch (const spindrift::Error& error) {
         std::fprintf(stderr, "spindrift: %s\n", error.what());
-        return int(error.exit);
+        return int(exitOf(error.failure));
     } catch (const std::bad_alloc&) {
         std::fprintf(stderr, "spindrift: out of memory; use a larger simulation.spacing\n");
         return int(Exit::Memory);

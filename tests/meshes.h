@@ -2,6 +2,8 @@
 // Surfaces for tests, as the text of files.
 #include "core/vec.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -214,6 +216,45 @@ inline Surface sphereSurface(Vec3d center, double radius, int times) {
     }
     for (Vec3d& p : s.vertices) p = center + radius * normalized(p);
     return s;
+}
+
+// A file for a test to read.
+inline std::string meshFile(const std::string& name, const std::string& text) {
+    const std::string path = testing::TempDir() + "/" + name;
+    std::ofstream(path, std::ios::binary) << text;
+    return path;
+}
+// Of an outline in x and y.
+inline Surface prismSurface(const std::vector<Vec3d>& outline, double low, double high) {
+    Surface s;
+    const int n = int(outline.size());
+    std::vector<int> bottom, top;
+    for (int k = 0; k < n; ++k) {
+        s.vertices.push_back({outline[size_t(k)].x, outline[size_t(k)].y, low}),
+            s.vertices.push_back({outline[size_t(k)].x, outline[size_t(k)].y, high});
+        const int next = (k + 1) % n;
+        s.faces.push_back({2 * k, 2 * next, 2 * next + 1, 2 * k + 1});
+        bottom.insert(bottom.begin(), 2 * k), top.push_back(2 * k + 1);
+    }
+    s.faces.push_back(bottom), s.faces.push_back(top);
+    return s;
+}
+inline Surface several(const std::vector<Surface>& parts) {
+    Surface s;
+    for (const Surface& part : parts) s.add(part);
+    return s;
+}
+// Solids that are concave, hollow, or touch.
+inline std::vector<std::pair<const char*, Surface>> solids() {
+    const Surface box = boxSurface({0.2, 0.2, 0.2}, {0.6, 0.5, 0.6});
+    const std::vector<Vec3d> L{{0.2, 0.2, 0}, {0.6, 0.2, 0}, {0.6, 0.3, 0},
+                               {0.3, 0.3, 0}, {0.3, 0.6, 0}, {0.2, 0.6, 0}};
+    return {{"box", box},
+            {"L", prismSurface(L, 0.2, 0.6)},
+            {"overlapping", several({box, boxSurface({0.413, 0.337, 0.411}, {0.8, 0.437, 0.511})})},
+            {"touching", several({box, boxSurface({0.6, 0.2, 0.2}, {0.8, 0.5, 0.6})})},
+            {"by an edge", several({box, boxSurface({0.6, 0.5, 0.2}, {0.8, 0.7, 0.6})})},
+            {"hollow", several({box, boxSurface({0.3, 0.3, 0.3}, {0.5, 0.4, 0.5})})}};
 }
 
 }  // namespace spindrift

@@ -1,3 +1,4 @@
+#include "app/exit_code.h"
 #include "app/bench.h"
 
 #include "app/bench_baseline.h"
@@ -191,7 +192,7 @@ int bench(const BenchOptions& options) {
     nlohmann::json rows = nlohmann::json::array();
     if (options.gpu)
         if (const std::string problem = whyNoGpu(Scene{}); !problem.empty())
-            throw Error(Exit::NoDevice, "--gpu: " + problem);
+            throw Error(Failure::NoDevice, "--gpu: " + problem);
     for (const Case& c : options.gpu ? gpuCases(options.most) : cpuCases()) {
         if (c.name.find(options.only) == std::string::npos) continue;
         const Timing t = timeAgainst(baseline, c, options);
@@ -205,7 +206,7 @@ int bench(const BenchOptions& options) {
     if (options.gpu && options.only.empty() && options.most >= 1'000'000)
         rows.push_back(benchFrameAndSwitch(sceneOf(withWalls(1'000'000, 0, 1), options)));
     if (rows.empty())
-        throw Error(Exit::Usage,
+        throw Error(Failure::Usage,
                     fmt::format("--only: no case is called \"{}\"; run bench without it to see all",
                                 options.only));
     if (!options.json.empty()) writeText(options.json, rows.dump(2) + "\n");

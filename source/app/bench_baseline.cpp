@@ -20,7 +20,7 @@ BenchBaseline::BenchBaseline(const std::string& path) {
     rows_ = nlohmann::json::parse(file, nullptr, false);
     if (!rows_.is_array())
         throw Error(
-            Exit::Usage,
+            Failure::Usage,
             path +
                 ": is not what bench --json writes; remove it, and the next run begins a new one");
 }

@@ -17,7 +17,7 @@ public:
 
     BenchBaseline() = default;
     // The rows that an earlier run wrote to `path`; none when there is no such file. Throws
-    // Error(Exit::Usage) when it is something else.
+    // Error(Failure::Usage) when it is something else.
     explicit BenchBaseline(const std::string& path);
 
     // Takes a row that has no match yet; returns whether it was one.

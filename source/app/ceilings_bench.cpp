@@ -1,3 +1,4 @@
+#include "app/exit_code.h"
 #include "app/ceilings_bench.h"
 
 #include "app/scene_choice.h"

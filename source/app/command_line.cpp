@@ -1,3 +1,4 @@
+#include "app/exit_code.h"
 #include "app/command_line.h"
 
 #include "app/bench.h"
@@ -57,7 +58,7 @@ struct RunOptions {
     bool quiet = false, printConfig = false;
 };
 
-[[noreturn]] void misuse(const std::string& message) { throw Error(Exit::Usage, message); }
+[[noreturn]] void misuse(const std::string& message) { throw Error(Failure::Usage, message); }
 
 std::vector<std::string> split(const std::string& text, char separator) {
     std::vector<std::string> parts(1);

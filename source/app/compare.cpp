@@ -1,3 +1,4 @@
+#include "app/exit_code.h"
 #include "app/compare.h"
 
 #include "core/error.h"

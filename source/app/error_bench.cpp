@@ -1,3 +1,4 @@
+#include "app/exit_code.h"
 #include "app/error_bench.h"
 
 #include "app/validate.h"

@@ -1,3 +1,4 @@
+#include "app/exit_code.h"
 #include "app/explain.h"
 
 #include "core/error.h"

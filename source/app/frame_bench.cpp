@@ -1,3 +1,4 @@
+#include "app/exit_code.h"
 #include "app/frame_bench.h"
 
 #include "app/frame.h"

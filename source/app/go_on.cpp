@@ -66,13 +66,13 @@ void chooseEnd(Scene& scene, const std::vector<KnobChoice>& choices, const StepS
     if (bySteps && !byTime) scene.output.time = 0;
     if (byTime && !bySteps) scene.compute.steps = 0;
     if (scene.compute.steps > 0 && scene.compute.steps < clock.steps)
-        throw Error(Exit::Usage, fmt::format("--steps {}: {} goes on from step {}; name a later "
-                                             "one, they count from the beginning of the run",
-                                             scene.compute.steps, file, clock.steps));
+        throw Error(Failure::Usage, fmt::format("--steps {}: {} goes on from step {}; name a later "
+                                                "one, they count from the beginning of the run",
+                                                scene.compute.steps, file, clock.steps));
     if (isBehind(scene.output.time, clock))
-        throw Error(Exit::Usage, fmt::format("--time {}: {} goes on from {:.6g} s; name a later "
-                                             "one, it counts from the beginning of the run",
-                                             scene.output.time, file, clock.time));
+        throw Error(Failure::Usage, fmt::format("--time {}: {} goes on from {:.6g} s; name a later "
+                                                "one, it counts from the beginning of the run",
+                                                scene.output.time, file, clock.time));
 }
 
 std::vector<CurvePoint> curvesOf(const SeriesTable& series, int dimensions) {
@@ -122,7 +122,7 @@ Start goOn(const std::string& file, const std::vector<KnobChoice>& choices) {
     applyChoices(scene, choices);
     for (const auto& [path, value] : builtFrom(scene))
         if (const auto old = before.find(path); old == before.end() || old->second != value)
-            throw Error(Exit::Usage,
+            throw Error(Failure::Usage,
                         path + ": can't be changed in a run that has begun; start the scene again");
     checkScene(scene, file, countOf(state.particles));
     chooseEnd(scene, choices, state.clock, file);

@@ -1,3 +1,4 @@
+#include "app/exit_code.h"
 #include "app/headless.h"
 
 #include "app/explain.h"
@@ -57,10 +58,10 @@ void requireOutputs(const Output& output, const Start& start) {
         const std::string place = whereItLeads(file);
         if (place.empty()) continue;
         if (place == source && !(start.state && format.file == &Output::checkpoint))
-            throw Error(Exit::Output,
+            throw Error(Failure::Output,
                         file + ": can't be written: the run is read from it; name another file");
         if (!places.insert(place).second)
-            throw Error(Exit::Output,
+            throw Error(Failure::Output,
                         isStandardOutput(file)
                             ? "two outputs both want standard output; give one of them a file"
                             : file + ": two outputs want this file; give each a file of its own");
@@ -96,7 +97,7 @@ public:
           progress_(!quiet),
           probes_(start.scene),
           validity_(start.scene) {
-        if (isInvalid()) throw Error(Exit::Invalid, refusal());
+        if (isInvalid()) throw Error(Failure::Invalid, refusal());
         requireOutputs(scene_.output, start);
         const Output& output = scene_.output;
         if (!output.screenshot.empty() || !output.frames.empty()) {

@@ -1,3 +1,4 @@
+#include "app/exit_code.h"
 #include "app/local_bench.h"
 
 #include "app/scene_choice.h"
@@ -243,7 +244,7 @@ int benchLocalSteps(const LocalBenchOptions& options) {
     }
     if (rows.empty())
         throw Error(
-            Exit::Usage,
+            Failure::Usage,
             fmt::format("--only: no case is called \"{}\"; run bench --local without it to see all",
                         options.only));
     return int(Exit::Ok);

@@ -60,7 +60,7 @@ std::string findScene(const std::string& name) {
         if (fs::is_regular_file(path, none)) return path.string();
     const std::vector<std::string> names = shippedScenes();
     const std::string nearest = nearestName(fs::path(name).stem().string(), names);
-    throw Error(Exit::Scene,
+    throw Error(Failure::Scene,
                 fmt::format("{}: no such scene file; {}shipped scenes: {}", name,
                             nearest.empty() ? "" : fmt::format("did you mean {}? ", nearest),
                             listed(names)));
@@ -70,7 +70,7 @@ void applyChoices(Scene& scene, const std::vector<KnobChoice>& choices) {
     for (const KnobChoice& choice : choices) {
         try {
             setKnob(scene, choice.path + "=" + choice.value, choice.option);
-        } catch (const Error& error) { throw Error(Exit::Usage, error.what()); }
+        } catch (const Error& error) { throw Error(Failure::Usage, error.what()); }
     }
 }
 
@@ -80,7 +80,7 @@ namespace {
 std::pair<Scene, std::string> sceneOf(const std::string& name) {
     const std::string file = findScene(name.empty() ? "dam_break" : name);
     if (isCheckpoint(file))
-        throw Error(Exit::Scene, file + ": is a checkpoint; here a scene is wanted");
+        throw Error(Failure::Scene, file + ": is a checkpoint; here a scene is wanted");
     return {loadScene(file), file};
 }
 

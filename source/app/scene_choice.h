@@ -22,7 +22,7 @@ std::string titleOfFile(const std::string& file);
 std::string configsFolder();
 
 // The path of a scene file: `name` itself, or the shipped scene of that name ("pool_drop",
-// "test/ball_drop_small"). Throws Error(Exit::Scene) naming the nearest shipped scene.
+// "test/ball_drop_small"). Throws Error(Failure::Scene) naming the nearest shipped scene.
 std::string findScene(const std::string& name);
 
 // A knob that the command line sets: the option it came by, its path and value.

@@ -1,3 +1,4 @@
+#include "app/exit_code.h"
 #include "app/stress.h"
 
 #include "core/error.h"

@@ -1,3 +1,4 @@
+#include "app/exit_code.h"
 #include "app/validate.h"
 
 #include "core/error.h"
@@ -27,7 +28,7 @@ std::vector<ValidationCase> chooseCases(const std::vector<ValidationCase>& all,
         if (found == known.end()) {
             const std::string nearest = nearestName(name, known);
             throw Error(
-                Exit::Usage,
+                Failure::Usage,
                 fmt::format("{}: no such case; {}cases: {}", name,
                             nearest.empty() ? "" : fmt::format("did you mean {}? ", nearest),
                             listed(known)));

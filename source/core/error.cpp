@@ -14,8 +14,8 @@ std::string oneLine(std::string text) {
 
 }  // namespace
 
-Error::Error(Exit code, const std::string& message)
-    : std::runtime_error(oneLine(message)), exit(code) {}
+Error::Error(Failure kind, const std::string& message)
+    : std::runtime_error(oneLine(message)), failure(kind) {}
 
 void failCheck(const char* expression, const char* file, int line) {
     std::fprintf(stderr, "spindrift: bug: %s is false at %s:%d\n", expression, file, line);

@@ -20,8 +20,8 @@ namespace fs = std::filesystem;
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why,
                          const std::string& remedy) {
-    throw Error(Exit::Output, (path == "-" ? "standard output" : path) +
-                                  ": can't be written: " + why + "; " + remedy);
+    throw Error(Failure::Output, (path == "-" ? "standard output" : path) +
+                                     ": can't be written: " + why + "; " + remedy);
 }
 [[noreturn]] void refuseIncomplete(const std::string& path) {
     refuse(path, std::string("it could not be completed (") + std::strerror(errno) + ")",

@@ -80,17 +80,17 @@ double numberOf(std::string cell, char& decimal) {
 std::ifstream openTable(const std::string& path) {
     std::error_code none;
     if (!std::filesystem::exists(path, none))
-        throw Error(Exit::Scene, path + ": no such file; check the path");
+        throw Error(Failure::Scene, path + ": no such file; check the path");
     std::ifstream stream(path);
     if (!stream || std::filesystem::is_directory(path, none))
-        throw Error(Exit::Scene,
+        throw Error(Failure::Scene,
                     path + ": can't be read; it is a folder, or its permissions forbid it");
     const std::string wide[] = {"\xff\xfe", "\xfe\xff"}, mark = "\xef\xbb\xbf";
     std::string start(mark.size(), 0);
     stream.read(start.data(), long(start.size()));
     for (const std::string& w : wide)
         if (start.starts_with(w))
-            throw Error(Exit::Scene, path + ": is text in UTF-16; save it as UTF-8");
+            throw Error(Failure::Scene, path + ": is text in UTF-16; save it as UTF-8");
     stream.clear();
     if (start != mark) stream.seekg(0);
     return stream;
@@ -115,7 +115,7 @@ struct Header {
 Header readHeader(const std::string& path, std::istream& stream, int& line) {
     std::string text;
     if (!nextLine(stream, text, line))
-        throw Error(Exit::Scene, path + ": is empty; its first line names the columns");
+        throw Error(Failure::Scene, path + ": is empty; its first line names the columns");
     Header header{separatorOf(text), {}, {}};
     for (const std::string& cell : cellsOf(text, header.separator)) {
         const size_t end = std::min(cell.find_first_of("[(/"), cell.size());
@@ -153,7 +153,7 @@ Table readRows(const std::string& path, std::istream& stream, int number, const 
         table.lines.push_back(number);
     }
     if (table.rows() == 0)
-        throw Error(Exit::Scene,
+        throw Error(Failure::Scene,
                     path + ": has no rows of numbers; the first line names the columns");
     return table;
 }
@@ -163,9 +163,9 @@ double factorOf(const std::string& path, const std::string& unit, const TableCol
     if (unit.empty()) return 1;
     const std::optional<double> factor = unitFactor(unit, column.unit);
     if (!factor)
-        throw Error(Exit::Scene, path + ": column " + column.name + ": \"" + unit.substr(0, 40) +
-                                     "\" is no unit of it that is known; use " +
-                                     commonUnits(column.unit));
+        throw Error(Failure::Scene, path + ": column " + column.name + ": \"" + unit.substr(0, 40) +
+                                        "\" is no unit of it that is known; use " +
+                                        commonUnits(column.unit));
     return *factor;
 }
 
@@ -193,12 +193,12 @@ Table readStrictTable(const std::string& path, const std::vector<TableColumn>& k
     for (std::string& name : header.names) name = inSmall(name);
     if (std::set<std::string>(header.names.begin(), header.names.end()).size() <
         header.names.size())
-        throw Error(Exit::Scene, path + ": names a column twice; remove one");
+        throw Error(Failure::Scene, path + ": names a column twice; remove one");
     for (const TableColumn& column : known)
         if (column.needed &&
             std::find(header.names.begin(), header.names.end(), column.name) == header.names.end())
-            throw Error(Exit::Scene, path + ": has no column " + column.name +
-                                         "; its first line names the columns");
+            throw Error(Failure::Scene, path + ": has no column " + column.name +
+                                            "; its first line names the columns");
     std::vector<double> factors;
     for (size_t k = 0; k < header.names.size(); ++k) {
         const auto column = std::find_if(known.begin(), known.end(), [&](const TableColumn& c) {
@@ -207,8 +207,8 @@ Table readStrictTable(const std::string& path, const std::vector<TableColumn>& k
         if (column == known.end()) {
             std::string names;
             for (const TableColumn& c : known) names += (names.empty() ? "" : ", ") + c.name;
-            throw Error(Exit::Scene, path + ": unknown column \"" + header.names[k].substr(0, 40) +
-                                         "\"; known: " + names);
+            throw Error(Failure::Scene, path + ": unknown column \"" +
+                                            header.names[k].substr(0, 40) + "\"; known: " + names);
         }
         factors.push_back(factorOf(path, header.units[k], *column));
     }
@@ -228,7 +228,7 @@ void refuseAny(const std::string& path, const std::vector<std::string>& complain
     if (complaints.size() > Most)
         text += "; and " + std::to_string(complaints.size() - Most) + " more";
     if (!text.empty())
-        throw Error(Exit::Scene, path + ": " + text + "; mend or remove these lines");
+        throw Error(Failure::Scene, path + ": " + text + "; mend or remove these lines");
 }
 
 int64_t countRows(const std::string& path) {

@@ -107,13 +107,13 @@ void requireCuda(cudaError_t code, const char* what) {
     cudaGetLastError();  // the next call must not find it again
     const std::string message = std::string(what) + ": " + cudaGetErrorString(code);
     if (code == cudaErrorMemoryAllocation)
-        throw Error(Exit::Memory, "out of GPU memory while " + message +
-                                      "; raise simulation.spacing or use --backend cpu");
+        throw Error(Failure::Memory, "out of GPU memory while " + message +
+                                         "; raise simulation.spacing or use --backend cpu");
     if (code == cudaErrorNoDevice || code == cudaErrorInsufficientDriver ||
         code == cudaErrorNoKernelImageForDevice)
-        throw Error(Exit::NoDevice,
+        throw Error(Failure::NoDevice,
                     "the GPU can't be used while " + message + "; use --backend cpu");
-    throw Error(Exit::DeviceLost,
+    throw Error(Failure::DeviceLost,
                 "the GPU was lost while " + message + "; start again, or use --backend cpu");
 }
 
@@ -121,7 +121,7 @@ void requireCuda(cudaError_t code, const char* what) {
 
 Cuda::Cuda(int index) : Cuda(index, Nothing{}) {
     if (const std::string problem = cudaProblem(index); !problem.empty())
-        throw Error(Exit::NoDevice, "--backend cuda: " + problem + "; or use --backend cpu");
+        throw Error(Failure::NoDevice, "--backend cuda: " + problem + "; or use --backend cpu");
     activate();
     requireCuda(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "making a stream");
     scratch_ = allocateBytes(scratchBytes);
@@ -260,6 +260,60 @@ void Cuda::endRecording(Recording& recording) {
     requireCuda(made, "recording a step");
     recording.current_ = true;
     replay(recording);
+}
+
+static __global__ void decideLoop(cudaGraphConditionalHandle condition, const int* again) {
+    cudaGraphSetConditional(condition, *again != 0);
+}
+
+Cuda::Loop Cuda::beginLoop() {
+    CHECK(recording_);
+    Loop loop{stream_, 0};
+    cudaStreamCaptureStatus status{};
+    cudaGraph_t graph = nullptr;
+    const cudaGraphNode_t* before = nullptr;
+    size_t count = 0;
+    requireCuda(
+        cudaStreamGetCaptureInfo(stream_, &status, nullptr, &graph, &before, nullptr, &count),
+        "recording a loop");
+    requireCuda(
+        cudaGraphConditionalHandleCreate(&loop.condition, graph, 1, cudaGraphCondAssignDefault),
+        "recording a loop");
+    cudaGraphNodeParams parameters{};
+    parameters.type = cudaGraphNodeTypeConditional;
+    parameters.conditional.handle = loop.condition;
+    parameters.conditional.type = cudaGraphCondTypeWhile;
+    parameters.conditional.size = 1;
+    cudaGraphNode_t node = nullptr;
+    requireCuda(cudaGraphAddNode(&node, graph, before, nullptr, count, &parameters),
+                "recording a loop");
+    requireCuda(cudaStreamUpdateCaptureDependencies(stream_, &node, nullptr, 1,
+                                                    cudaStreamSetCaptureDependencies),
+                "recording a loop");
+    cudaStream_t body = nullptr;
+    requireCuda(cudaStreamCreateWithFlags(&body, cudaStreamNonBlocking), "making a stream");
+    stream_ = body;
+    const cudaError_t begun =
+        cudaStreamBeginCaptureToGraph(body, parameters.conditional.phGraph_out[0], nullptr, nullptr,
+                                      0, cudaStreamCaptureModeThreadLocal);
+    if (begun != cudaSuccess) leaveLoop(loop);
+    requireCuda(begun, "recording a loop");
+    return loop;
+}
+
+void Cuda::endLoop(const Loop& loop, const int* again) {
+    launch(decideLoop, 1, 1, loop.condition, again);
+    cudaGraph_t body = nullptr;  // belongs to the loop's node
+    const cudaError_t ended = cudaStreamEndCapture(stream_, &body);
+    cudaStreamDestroy(std::exchange(stream_, loop.around));
+    requireCuda(ended, "recording a loop");
+}
+
+void Cuda::leaveLoop(const Loop& loop) {
+    cudaGraph_t body = nullptr;
+    cudaStreamEndCapture(stream_, &body);
+    cudaStreamDestroy(std::exchange(stream_, loop.around));
+    cudaGetLastError();
 }
 
 // --- clocks ---

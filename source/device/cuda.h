@@ -168,6 +168,18 @@ public:
         }
         endRecording(recording);
     }
+    // While recording: `f`, and again as long as *again, memory of the device that `f` writes, is
+    // not zero. The host does not read it.
+    template <class F> void repeat(const int* again, const F& f) {
+        const Loop loop = beginLoop();
+        try {
+            f();
+        } catch (...) {
+            leaveLoop(loop);
+            throw;
+        }
+        endLoop(loop, again);
+    }
 
     template <class F> void step(const F& f) { f(); }
 
@@ -221,6 +233,14 @@ private:
     void beginRecording();
     void abandonRecording();
     void endRecording(Recording&);
+    // A loop's body is recorded on a stream of its own into a graph of its own.
+    struct Loop {
+        cudaStream_t around;
+        cudaGraphConditionalHandle condition;
+    };
+    Loop beginLoop();
+    void endLoop(const Loop&, const int* again);
+    void leaveLoop(const Loop&);
     cudaEvent_t mark();
     std::vector<double> intervals(const std::vector<cudaEvent_t>&);
 

@@ -221,7 +221,7 @@ Checkpoint readAll(hid_t file, const std::string& path) {
     const std::vector<char> text = readArray<char>(file, Format, H5T_NATIVE_UCHAR, 1);
     const double version = readNumbers(file, "version", 1)[0];
     if (version > double(Version))
-        throw Error(Exit::Scene, path + ": is of a newer version of the program; update it");
+        throw Error(Failure::Scene, path + ": is of a newer version of the program; update it");
     c.scene = parseScene(std::string(text.begin(), text.end()), path);
     const std::vector<double> clock = readNumbers(file, "clock", 3);
     c.state.clock = {clock[0], clock[1], int64_t(clock[2])};
@@ -264,13 +264,14 @@ Checkpoint readCheckpoint(const std::string& path) {
     try {
         const Handle file = hdf5::openFile(path);
         if (H5Lexists(file, Format, H5P_DEFAULT) <= 0)
-            throw Error(Exit::Scene, path +
-                                         ": is an HDF5 file, but no checkpoint of Spindrift; give "
-                                         "a scene or a checkpoint");
+            throw Error(Failure::Scene,
+                        path +
+                            ": is an HDF5 file, but no checkpoint of Spindrift; give "
+                            "a scene or a checkpoint");
         return readAll(file, path);
     } catch (const Trouble& trouble) {
         throw Error(
-            Exit::Scene,
+            Failure::Scene,
             fmt::format("{}: the checkpoint is damaged or incomplete ({}); use an older one", path,
                         trouble.what));
     }

@@ -24,15 +24,15 @@ struct Checkpoint {
 // and velocities [fluid, 3], walls [boundary, 3] in m and m/s, relative to the domain's lower
 // corner, in the order of ids; attributes (float64): "clock" (time s, dt s, steps), "start" (lower
 // and upper corner of the fluid m, its speed m/s); the scene as JSON; "curves" [points, 4], where
-// there are any. Throws Error(Exit::Output).
+// there are any. Throws Error(Failure::Output).
 void writeCheckpoint(const std::string& path, const Scene&, const RunState&,
                      const std::vector<CurvePoint>& curves = {});
 
 // Whether a file claims to be HDF5, as scene files never do.
 bool isCheckpoint(const std::string& path);
 
-// Throws Error(Exit::Scene) with one line for a file that is truncated, damaged, of another program
-// or of a newer version.
+// Throws Error(Failure::Scene) with one line for a file that is truncated, damaged, of another
+// program or of a newer version.
 Checkpoint readCheckpoint(const std::string& path);
 
 }  // namespace spindrift

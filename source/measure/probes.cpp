@@ -236,7 +236,7 @@ size_t Probes::column(const std::string& name) const {
     const auto at = std::find_if(columns_.begin(), columns_.end(),
                                  [&](const Column& c) { return c.name == name; });
     if (at == columns_.end())
-        throw Error(Exit::Scene, "output.probes: none of them reads " + name + "; add it");
+        throw Error(Failure::Scene, "output.probes: none of them reads " + name + "; add it");
     return size_t(at - columns_.begin());
 }
 

@@ -18,7 +18,7 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why) {
     throw Error(
-        Exit::Output,
+        Failure::Output,
         fmt::format(
             "{}: can't go on with this series: {}; name another file, or move this one away", path,
             why));

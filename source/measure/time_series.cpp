@@ -113,7 +113,7 @@ void TimeSeries::goOn(const Measurement& now, const SeriesTable& earlier) {
         const std::optional<size_t> known = find(columns_, c.name);
         if (known && unitFactor(c.unit, columns_[*known].unit) != 1.0)  // however it is spelt
             throw Error(
-                Exit::Output,
+                Failure::Output,
                 fmt::format(
                     "{}: {} is in [{}] there, here in [{}]; name another file for the series",
                     earlier.path, c.name, c.unit, columns_[*known].unit));

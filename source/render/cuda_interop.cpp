@@ -14,9 +14,9 @@ namespace spindrift {
 static void require(cudaError_t code, const char* what) {
     if (code == cudaSuccess) return;
     cudaGetLastError();
-    throw Error(Exit::DeviceLost, std::string("the GPU was lost while ") + what + ": " +
-                                      cudaGetErrorString(code) +
-                                      "; start again, or use --backend cpu");
+    throw Error(Failure::DeviceLost, std::string("the GPU was lost while ") + what + ": " +
+                                         cudaGetErrorString(code) +
+                                         "; start again, or use --backend cpu");
 }
 
 // Off screen the display knows its device.

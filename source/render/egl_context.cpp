@@ -68,7 +68,7 @@ EglContext::EglContext(int cudaDevice) {
         loadGl();
         return;
     }
-    throw Error(Exit::NoDisplay,
+    throw Error(Failure::NoDisplay,
                 "no off-screen OpenGL 4.5 through EGL: install libegl-mesa0 and libgl1-mesa-dri");
 }
 

@@ -18,9 +18,9 @@ void Framebuffer::resize(int width, int height) {
     GLint most = 0;
     glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &most);
     if (width < 1 || height < 1 || width > most || height > most)
-        throw Error(Exit::Usage, "a picture of " + std::to_string(width) + "x" +
-                                     std::to_string(height) + " can't be drawn: 1 to " +
-                                     std::to_string(most) + " pixels a side");
+        throw Error(Failure::Usage, "a picture of " + std::to_string(width) + "x" +
+                                        std::to_string(height) + " can't be drawn: 1 to " +
+                                        std::to_string(most) + " pixels a side");
     if (width == width_ && height == height_) return;
     width_ = width;
     height_ = height;
@@ -50,10 +50,10 @@ void Framebuffer::resize(int width, int height) {
         drawingDepth_ = attachDepth(drawing_, samples_);
     }
     if (glCheckNamedFramebufferStatus(drawing(), GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-        throw Error(Exit::NoDisplay, "the driver refuses a picture of " + std::to_string(width) +
-                                         "x" + std::to_string(height) + " with " +
-                                         std::to_string(samples_) +
-                                         " samples: set window.samples=1 or a smaller size");
+        throw Error(Failure::NoDisplay, "the driver refuses a picture of " + std::to_string(width) +
+                                            "x" + std::to_string(height) + " with " +
+                                            std::to_string(samples_) +
+                                            " samples: set window.samples=1 or a smaller size");
 }
 
 void Framebuffer::resolve() const {

@@ -13,15 +13,15 @@ void loadGl() {
     glewExperimental = GL_TRUE;
     const GLenum status = glewInit();
     if (status != GLEW_OK && status != noGlxDisplay)
-        throw Error(Exit::NoDisplay,
+        throw Error(Failure::NoDisplay,
                     "OpenGL could not be loaded: install a driver (libgl1-mesa-dri)");
     GLint major = 0, minor = 0;
     glGetIntegerv(GL_MAJOR_VERSION, &major);
     glGetIntegerv(GL_MINOR_VERSION, &minor);
     if (major * 10 + minor < 45 || !glCreateBuffers || !glTextureStorage2DMultisample)
-        throw Error(Exit::NoDisplay, "OpenGL 4.5 is needed and this driver has " +
-                                         std::to_string(major) + "." + std::to_string(minor) +
-                                         ": update it, or install libgl1-mesa-dri");
+        throw Error(Failure::NoDisplay, "OpenGL 4.5 is needed and this driver has " +
+                                            std::to_string(major) + "." + std::to_string(minor) +
+                                            ": update it, or install libgl1-mesa-dri");
 }
 
 std::string glName() {

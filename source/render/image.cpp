@@ -14,12 +14,12 @@ Image readPng(const std::string& path) {
     png_image header{};
     header.version = PNG_IMAGE_VERSION;
     if (!png_image_begin_read_from_file(&header, path.c_str()))
-        throw Error(Exit::Scene, path + ": " + header.message + ": give the path of a PNG file");
+        throw Error(Failure::Scene, path + ": " + header.message + ": give the path of a PNG file");
     header.format = PNG_FORMAT_RGB;
     Image image{int(header.width), int(header.height), {}};
     image.rgb.resize(PNG_IMAGE_SIZE(header));
     if (!png_image_finish_read(&header, nullptr, image.rgb.data(), 0, nullptr))
-        throw Error(Exit::Scene, path + ": " + header.message + ": the PNG file is damaged");
+        throw Error(Failure::Scene, path + ": " + header.message + ": the PNG file is damaged");
     return image;
 }
 

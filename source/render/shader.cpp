@@ -20,9 +20,9 @@ std::string pathOf(const std::string& file) {
 std::string read(const std::string& path) {
     std::ifstream file(path);
     if (!file)
-        throw Error(Exit::NoDisplay, path +
-                                         ": shader not found: set SPINDRIFT_SHADERS to the "
-                                         "folder with the shaders");
+        throw Error(Failure::NoDisplay, path +
+                                            ": shader not found: set SPINDRIFT_SHADERS to the "
+                                            "folder with the shaders");
     std::ostringstream text;
     text << file.rdbuf();
     return text.str();
@@ -53,7 +53,7 @@ GlShader compile(GLenum stage, const std::string& path, const std::string& defin
     if (good) return shader;
     std::array<char, 1024> log{};
     glGetShaderInfoLog(shader, GLsizei(log.size()), nullptr, log.data());
-    throw Error(Exit::NoDisplay, path + ": shader doesn't compile: " + firstWords(log.data()));
+    throw Error(Failure::NoDisplay, path + ": shader doesn't compile: " + firstWords(log.data()));
 }
 
 }  // namespace
@@ -70,7 +70,8 @@ GlProgram loadProgram(const std::string& name, const std::string& defines) {
     if (good) return program;
     std::array<char, 1024> log{};
     glGetProgramInfoLog(program, GLsizei(log.size()), nullptr, log.data());
-    throw Error(Exit::NoDisplay, pathOf(name) + ": shaders don't link: " + firstWords(log.data()));
+    throw Error(Failure::NoDisplay,
+                pathOf(name) + ": shaders don't link: " + firstWords(log.data()));
 }
 
 }  // namespace spindrift

@@ -12,8 +12,8 @@ void VertexBuffer::resize(int count) {
     loan_.end();
     glNamedBufferData(buffer_, GLsizeiptr(sizeof(Vertex)) * count, nullptr, GL_STREAM_DRAW);
     if (glGetError() == GL_OUT_OF_MEMORY)
-        throw Error(Exit::Memory, "no graphics memory for " + std::to_string(count) +
-                                      " particles: raise simulation.spacing");
+        throw Error(Failure::Memory, "no graphics memory for " + std::to_string(count) +
+                                         " particles: raise simulation.spacing");
 }
 
 VertexMemory VertexBuffer::map(int device) {

@@ -11,6 +11,7 @@
 #include "scene/motion.h"
 #include "scene/particle_file.h"
 #include "scene/lattice.h"
+#include "scene/memory.h"
 #include "scene/particle_spacing.h"
 #include "scene/sample_object.h"
 #include "scene/schema.h"
@@ -24,23 +25,6 @@
 namespace spindrift {
 namespace {
 
-// State, sorted copies, neighbour blocks and vertices of one particle, with room to spare.
-constexpr double BytesPerParticle = 400;
-// Start and fill counters of one grid cell.
-constexpr double BytesPerCell = 16;
-// On a GPU: state, sorted copies, sort and vertices; what carried density and shifting add;
-// boundary particles have no velocity. Cells: two starts and a count.
-constexpr double GpuBytesPerParticle = 136, GpuBytesPerCarried = 8, GpuBytesPerShifted = 32,
-                 GpuBytesPerWall = 76, GpuBytesPerCell = 13;
-// Local steps: a level and its sorted copy, those of density and acceleration, a flag.
-constexpr double GpuBytesPerLocalStep = 29, GpuBytesPerLocalWall = 1;
-// Mixtures: mass and viscosity, and their sorted copies. Surface tension: a normal and its length.
-constexpr double GpuBytesPerMixed = 16, GpuBytesPerNormal = 20;
-// Of an elastic block, whose particles have 18 bonds each (measured: 1170 and 300); sheets have
-// fewer.
-constexpr double BytesPerObjectParticle = 1200, GpuBytesPerObjectParticle = 320;
-constexpr double HostBytesPerGpuParticle = 100;
-constexpr double GpuBytesAnyway = 64 << 20;
 // Particle ids are 32-bit; walls and fluid together stay clear of the limit.
 constexpr int64_t MostParticles = 1'000'000'000;
 constexpr double SmallestSupport = 1.5;
@@ -453,14 +437,14 @@ void checkCounts(const Scene& scene, ParticleCount count) {
     const char* remedy = "raise simulation.spacing or shrink the bodies and the domain";
     if (count.fluid > MostParticles || count.walls > MostParticles - count.fluid)
         throw Error(
-            Exit::Memory,
+            Failure::Memory,
             fmt::format("simulation.spacing: {} are more than the {} that a run can have; {}", what,
                         MostParticles, remedy));
     constexpr double GiB = 1 << 30;
     const int64_t needed = estimateMemory(scene, count), available = os::freeMemory();
     if (needed > available)
         throw Error(
-            Exit::Memory,
+            Failure::Memory,
             fmt::format("simulation.spacing: {} need about {:.1f} GiB of memory, {:.1f} GiB "
                         "are free; {}",
                         what, double(needed) / GiB, double(available) / GiB, remedy));
@@ -470,53 +454,7 @@ void checkCounts(const Scene& scene, ParticleCount count) {
                            scene.compute.threads, count.fluid));
 }
 
-// Cells are half a spacing long and two wide; in a box that is mostly empty they are made larger.
-double mostCells(const Scene& scene, double particles) {
-    const Vec3d size = toDouble(scene.domain.max) - toDouble(scene.domain.min);
-    const double dx = scene.simulation.spacing;
-    const double depth = scene.simulation.dimensions == 2 ? 2 * dx : size.z;
-    return std::min(size.x * size.y * depth / (2 * dx * dx * dx), std::max(4e6, 16 * particles));
-}
-
 }  // namespace
-
-int64_t estimateMemory(const Scene& scene, ParticleCount count) {
-    const double particles = double(count.fluid) + double(count.walls),
-                 objects = BytesPerObjectParticle * countObjectParticles(scene);
-    // A GPU's run keeps nothing here, but passes through.
-    if (scene.compute.backend == Backend::Cuda)
-        return int64_t(HostBytesPerGpuParticle * particles + objects);
-    const double bytes =
-        BytesPerParticle * particles + BytesPerCell * mostCells(scene, particles) + objects;
-    return int64_t(std::min(bytes, 9e18));
-}
-
-// What an integrator keeps over an evaluation of the forces, or collisions over a step, and its
-// sorted copies, on a GPU.
-static double keptBytes(const Scene& scene) {
-    constexpr double Vector = 2 * 16, Scalar = 2 * 4;
-    const double place = scene.solids.empty() ? 0 : Vector;  // where ways began
-    if (scene.time.integrator == Integrator::SymplecticEuler ||
-        scene.time.integrator == Integrator::Split)
-        return place;
-    if (scene.time.integrator == Integrator::VelocityVerlet) return Vector + place;
-    return 2 * Vector + (carriesDensity(scene) ? Scalar : 0);
-}
-
-int64_t estimateGpuMemory(const Scene& scene, ParticleCount count) {
-    const double fluid = double(count.fluid), walls = double(count.walls);
-    const bool local = scene.time.mode == TimeMode::Local;
-    const double more = (local ? GpuBytesPerLocalStep : 0) +
-                        (carriesDensity(scene) ? GpuBytesPerCarried : 0) +
-                        (shiftsParticles(scene) ? GpuBytesPerShifted : 0) +
-                        (isMultiFluid(scene) ? GpuBytesPerMixed : 0) +
-                        (scene.fluid.surfaceTension > 0 ? GpuBytesPerNormal : 0);
-    const double bytes = (GpuBytesPerParticle + more + keptBytes(scene)) * fluid +
-                         (GpuBytesPerWall + (local ? GpuBytesPerLocalWall : 0)) * walls +
-                         GpuBytesPerCell * mostCells(scene, fluid + walls) +
-                         GpuBytesPerObjectParticle * countObjectParticles(scene) + GpuBytesAnyway;
-    return int64_t(std::min(bytes, 9e18));
-}
 
 void checkScene(const Scene& scene, const std::string& place, std::optional<ParticleCount> begun) {
     requireRanges(scene, place);
@@ -544,7 +482,7 @@ void checkScene(const Scene& scene, const std::string& place, std::optional<Part
         checkCounts(scene, count);
         if (!begun) checkParticleFiles(scene);
     } catch (const Error& error) {
-        throw Error(error.exit, fmt::format("{}: {}", place, error.what()));
+        throw Error(error.failure, fmt::format("{}: {}", place, error.what()));
     }
 }
 

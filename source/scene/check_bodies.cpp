@@ -318,7 +318,7 @@ void checkObjects(const Scene& scene) {
     constexpr double Most = 2e7;
     if (const double count = countObjectParticles(scene); count > Most)
         throw Error(
-            Exit::Memory,
+            Failure::Memory,
             fmt::format("objects: {:.3g} particles are more than {:.0g}; raise their spacing",
                         count, Most));
     for (size_t i = 0; i < scene.grips.size(); ++i) {

@@ -13,7 +13,7 @@ namespace spindrift {
 
 // Throws Error (Scene).
 [[noreturn]] inline void refuse(const std::string& path, const std::string& message) {
-    throw Error(Exit::Scene, fmt::format("{}: {}", path, message));
+    throw Error(Failure::Scene, fmt::format("{}: {}", path, message));
 }
 
 // Names of probes and solids begin the names of columns.

@@ -6,7 +6,7 @@
 namespace spindrift {
 
 // Translates a historical file into a Scene of the classic formulation. Every key is optional.
-// Throws Error(Exit::Scene).
+// Throws Error(Failure::Scene).
 Scene readHistorical(const Json& root, const std::string& file);
 
 }  // namespace spindrift

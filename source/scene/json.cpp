@@ -16,7 +16,7 @@ constexpr size_t LargestFile = 16 << 20;
 
 std::string readText(const std::string& file) {
     const auto refuse = [&](const char* why) {
-        throw Error(Exit::Scene, fmt::format("{}: {}", file, why));
+        throw Error(Failure::Scene, fmt::format("{}: {}", file, why));
     };
     if (!std::filesystem::exists(file))
         refuse("no such file; check the path, or name a shipped scene");

@@ -322,7 +322,7 @@ double Mesh::fieldSpacing(double apart) const {
     const Thinnest t = thinnest(2 * spacing);
     if (t.thickness >= 2 * spacing) return spacing;
     if (isTooLarge(nodesOf(high_ - low_, 0.5 * t.thickness)))
-        throw Error(Exit::Scene,
+        throw Error(Failure::Scene,
                     fmt::format("is {:.3g} thin near {}, too thin for its size, {:.3g}: fluid "
                                 "could pass; thicken it, or divide it into several",
                                 t.thickness, shown(t.at), length(high_ - low_)));

@@ -23,7 +23,7 @@ constexpr size_t LargestFile = 512 << 20, MostTriangles = 5'000'000;
 constexpr double Farthest = 1e9;  // that a coordinate may lie from 0
 
 [[noreturn]] void refuse(const std::string& path, const std::string& what) {
-    throw Error(Exit::Scene, fmt::format("{}: {}", path, what));
+    throw Error(Failure::Scene, fmt::format("{}: {}", path, what));
 }
 
 // What a file says.

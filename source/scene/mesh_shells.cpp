@@ -111,7 +111,7 @@ public:
 
 private:
     [[noreturn]] void refuse(const std::string& what) const {
-        throw Error(Exit::Scene, fmt::format("{}: {}", name_, what));
+        throw Error(Failure::Scene, fmt::format("{}: {}", name_, what));
     }
     std::string edge(const Use& use) const {
         return fmt::format("the edge from {} to {}", shown(vertices_[size_t(use.low)]),

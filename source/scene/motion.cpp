@@ -61,7 +61,7 @@ void readMotions(Scene& scene, const std::string& folder, const std::string& pla
             solid.keyframes =
                 readKeyframes((std::filesystem::path(folder) / solid.motion).string());
         } catch (const Error& error) {
-            throw Error(error.exit,
+            throw Error(error.failure,
                         fmt::format("{}: solids[{}].motion: {}", place, i, error.what()));
         }
         solid.motion.clear();

@@ -30,7 +30,7 @@ using Values =
     std::array<std::vector<double>, Columns>;  // of each column, empty where there is none
 
 [[noreturn]] void refuse(const std::string& path, const std::string& what) {
-    throw Error(Exit::Scene, fmt::format("{}: {}", path, what));
+    throw Error(Failure::Scene, fmt::format("{}: {}", path, what));
 }
 
 // Which columns there are must make sense together. A density of 0 says nothing: lone particles of

@@ -38,12 +38,12 @@ public:
     explicit StrictKeys(const std::string& file) : file_(file) {}
     bool operator()(int depth, Json::parse_event_t event, const Json& parsed) {
         if (depth > 32)
-            throw Error(Exit::Scene, fmt::format("{}: nested more than 32 levels deep", file_));
+            throw Error(Failure::Scene, fmt::format("{}: nested more than 32 levels deep", file_));
         if (event == Json::parse_event_t::object_start) keys_.emplace_back();
         if (event == Json::parse_event_t::object_end) keys_.pop_back();
         if (event == Json::parse_event_t::key &&
             !keys_.back().insert(parsed.get<std::string>()).second)
-            throw Error(Exit::Scene,
+            throw Error(Failure::Scene,
                         fmt::format("{}: the key {} stands twice in one object; remove one", file_,
                                     shown(parsed)));
         return true;
@@ -274,12 +274,12 @@ Json parseJson(const std::string& text, const std::string& file) {
         // programmers.
         const std::string what = error.what();
         const size_t detail = what.rfind("syntax error");
-        throw Error(Exit::Scene,
+        throw Error(Failure::Scene,
                     fmt::format("{}: {}: not valid JSON: {}", file, lineAndColumn(text, error.byte),
                                 detail == std::string::npos ? what : what.substr(detail)));
     } catch (const Json::exception& error) {
         const std::string what = error.what();
-        throw Error(Exit::Scene,
+        throw Error(Failure::Scene,
                     fmt::format("{}: not valid JSON: {}", file, what.substr(what.find(']') + 2)));
     }
 }

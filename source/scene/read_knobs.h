@@ -24,7 +24,7 @@ struct Place {
     std::string file;
     std::string hint;  // appended to unknown keys
     [[noreturn]] void fail(const std::string& path, const std::string& message) const {
-        throw Error(Exit::Scene, fmt::format("{}: {}: {}", file, path, message));
+        throw Error(Failure::Scene, fmt::format("{}: {}: {}", file, path, message));
     }
 };
 
@@ -49,7 +49,7 @@ template <class E>
 requires std::is_enum_v<E>
 bool inRange(E value, const Knob&) { return size_t(value) < enumNames(value).size(); }
 
-// One overload for each type of knob; throws Error(Exit::Scene).
+// One overload for each type of knob; throws Error(Failure::Scene).
 void assign(float&, const Json&, const Knob&, const Place&, const std::string& path);
 void assign(int&, const Json&, const Knob&, const Place&, const std::string& path);
 void assign(bool&, const Json&, const Knob&, const Place&, const std::string& path);

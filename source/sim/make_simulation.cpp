@@ -2,7 +2,7 @@
 
 #include "core/error.h"
 #include "device/cuda_devices.h"
-#include "scene/check.h"
+#include "scene/memory.h"
 
 #include <hwy/targets.h>
 
@@ -42,11 +42,12 @@ static bool runsOnGpu(const Scene& scene, ParticleCount count) {
     if (scene.compute.backend == Backend::Cpu) return false;
     const bool asked = scene.compute.backend == Backend::Cuda;
     if (const std::string why = whyNoGpu(scene); !why.empty()) {
-        if (asked) throw Error(Exit::NoDevice, "--backend cuda: " + why + "; or use --backend cpu");
+        if (asked)
+            throw Error(Failure::NoDevice, "--backend cuda: " + why + "; or use --backend cpu");
         return false;
     }
     if (const std::string why = whyTooLargeForGpu(scene, count); !why.empty()) {
-        if (asked) throw Error(Exit::Memory, why + "; raise it, or use --backend cpu");
+        if (asked) throw Error(Failure::Memory, why + "; raise it, or use --backend cpu");
         return false;
     }
     return true;
@@ -75,7 +76,7 @@ std::unique_ptr<Simulation> makeSimdSimulation(const Scene& scene, const RunStat
         if ((scene.compute.simd == Simd::Auto || scene.compute.simd == set.name) &&
             (machine & set.target))
             return set.make(scene, state, threads);
-    throw Error(Exit::NoDevice,
+    throw Error(Failure::NoDevice,
                 "compute.simd: this processor does not have that instruction set; use auto");
 }
 
@@ -86,7 +87,7 @@ static std::unique_ptr<Simulation> build(const Scene& scene, const RunState* sta
         const RunState& from = state ? *state : start;
         if (from.particles.positions.empty())
             throw Error(
-                Exit::Scene,
+                Failure::Scene,
                 "fluid.bodies: not one particle fits into them beside the solids and objects; "
                 "move or shrink those, a mesh whose file is in millimetres by its scale");
         if (gpu) return makeCudaSimulation(scene, from, deviceOf(scene));
@@ -94,7 +95,7 @@ static std::unique_ptr<Simulation> build(const Scene& scene, const RunState* sta
                    ? makeDoubleSimulation(scene, from, threadCount(scene))
                    : makeSimdSimulation(scene, from, threadCount(scene));
     } catch (const std::bad_alloc&) {
-        throw Error(Exit::Memory,
+        throw Error(Failure::Memory,
                     "out of memory while building the particles; use a larger simulation.spacing");
     }
 }

@@ -12,7 +12,7 @@ std::string cudaDeviceName(int) { return ""; }
 int64_t cudaFreeMemory(int) { return 0; }
 
 std::unique_ptr<Simulation> makeCudaSimulation(const Scene&, const RunState&, int device) {
-    throw Error(Exit::NoDevice, "--backend cuda: " + cudaProblem(device));
+    throw Error(Failure::NoDevice, "--backend cuda: " + cudaProblem(device));
 }
 
 }  // namespace spindrift

@@ -111,7 +111,7 @@ public:
         Measurement m = measureFluid(flow_);
         countSteps(m, clock(), blocks_.areOn(), flow_.fluidCount);
         m.solvesPressure = factsOf(flow_.scene).solvesPressure;
-        m.solve = solver_.report();
+        if (m.solvesPressure) m.solve = solver_.report();
         m.solids = solids_.measure();
         return m;
     }
@@ -154,7 +154,7 @@ public:
 
 private:
     static void require(bool sound, const char* otherwise) {
-        if (!sound) throw Error(Exit::Usage, otherwise);
+        if (!sound) throw Error(Failure::Usage, otherwise);
     }
     auto parts() {
         return std::tie(tension_, mixing_, solids_, floating_, objects_, resistance_, blocks_);

@@ -1,5 +1,6 @@
 #pragma once
 // The real program as a shell runs it: what it prints and its exit code.
+#include "app/exit_code.h"
 #include "core/error.h"
 
 #include <gtest/gtest.h>

@@ -2,6 +2,7 @@
 // sums, and bit by bit when a run moves from one to the other.
 #include "core/error.h"
 #include "cuda/gpu.h"
+#include "scene/memory.h"
 #include "sim/make_simulation.h"
 
 #include <random>
@@ -369,7 +370,7 @@ TEST(Gpu, TooLargeASceneIsRefusedAndLeavesTheOldRunAlone) {
         makeSimulation(huge);
         FAIL() << "was not refused";
     } catch (const Error& error) {
-        EXPECT_EQ(error.exit, Exit::Memory);
+        EXPECT_EQ(error.failure, Failure::Memory);
         EXPECT_NE(std::string(error.what()).find("GPU memory"), std::string::npos) << error.what();
     }
     running->step(3);

@@ -32,7 +32,7 @@ std::string messageOf(const std::string& program) {
     try {
         loadProgram(program);
     } catch (const Error& error) {
-        EXPECT_EQ(error.exit, Exit::NoDisplay);
+        EXPECT_EQ(error.failure, Failure::NoDisplay);
         return error.what();
     }
     return {};

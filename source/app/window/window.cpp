@@ -1,3 +1,4 @@
+#include "app/exit_code.h"
 #include "app/window/window.h"
 
 #include "app/scene_choice.h"
@@ -21,7 +22,7 @@ namespace spindrift {
 namespace {
 
 [[noreturn]] void noDisplay(const std::string& why) {
-    throw Error(Exit::NoDisplay, "no window: " + why + ": set DISPLAY, or use --headless");
+    throw Error(Failure::NoDisplay, "no window: " + why + ": set DISPLAY, or use --headless");
 }
 
 // SDL, the window and its GL context; closed in the opposite order.

@@ -259,7 +259,7 @@ private:
             const SolidSample& sample = flow_.solidSamples[s];
             const std::vector<float>& volumes = sample.volumes;
             if (sizes.size() <= s || volumes.size() != size_t(sizes[s]))
-                throw Error(Exit::Scene,
+                throw Error(Failure::Scene,
                             "solids: the particles of this run are of another version of the "
                             "program; start the scene again");
             std::transform(volumes.begin(), volumes.end(), mass.begin() + long(end),

@@ -214,6 +214,8 @@ struct SumError {
 // How the iterations of a step go: `allowed` is the mean error of density with which they end.
 struct SolveProgress {
     double weight = 1, error = 1e300, count = 0, allowed = 0;
+    int iterations = 0, failures = 0;  // of this step; in all
+    int goesOn = 1;
     HD bool isFound() const { return error <= allowed * count; }
     HD static double after(double weight) { return (1 + sqrt(1 + 4 * weight * weight)) / 2; }
 };
@@ -227,7 +229,9 @@ struct BeginSolve {
     double densityError;
     SolveProgress* progress;
     HD void operator()(int) const {
+        const int failures = progress->failures;
         *progress = SolveProgress{};
+        progress->failures = failures;
         progress->allowed = 3 * densityError * double(share.now(v));
         v.state->momentum = 0;
     }
@@ -238,12 +242,16 @@ struct ChooseMomentum {
     using Index = int;
     StepState* state;
     const SolveError* error;
+    int mostIterations;
     SolveProgress* progress;
     HD void operator()(int) const {
         SolveProgress& p = *progress;
         p.weight = error->sum > p.error ? 1 : SolveProgress::after(p.weight);
         p.error = error->sum, p.count = error->count;
         state->momentum = (p.weight - 1) / SolveProgress::after(p.weight);
+        ++p.iterations;
+        p.goesOn = !p.isFound() && p.iterations < mostIterations;
+        p.failures += !p.goesOn && !p.isFound();
     }
 };
 

@@ -20,31 +20,35 @@ public:
     }
     void findError() {
         flow_.device.reduce(flow_.fluid.slots(), SumError{flow_.fluid.view()}, error_.data());
-        flow_.device.forEach(1,
-                             ChooseMomentum{flow_.clock.data(), error_.data(), progress_.data()});
+        flow_.device.forEach(1, ChooseMomentum{flow_.clock.data(), error_.data(),
+                                               flow_.scene.solver.iterations, progress_.data()});
     }
-    // Asked after each iteration.
-    bool isDone() {
-        ++now_.iterations;
-        SolveProgress p;
-        flow_.device.download(&p, progress_.data(), 1);
-        if (!p.isFound() && now_.iterations < flow_.scene.solver.iterations) return false;
-        now_.error = p.count > 0 ? p.error / p.count : 0, now_.allowed = p.allowed;
-        now_.failures = last_.failures + !p.isFound();
-        last_ = now_, now_ = {};
-        return true;
-    }
+    // Whether there is another iteration; asked after each.
+    bool goesOn() const { return progress().goesOn != 0; }
+    // The same, in memory of the device.
+    const int* goesOnFlag() const { return &progress_.data()->goesOn; }
     void shortenSteps() {
         flow_.device.forEach(1, ShortenSteps{flow_.clock.data(), progress_.data()});
     }
     // Of the last step.
-    SolveReport report() const { return last_; }
+    SolveReport report() const {
+        const SolveProgress p = progress();
+        SolveReport report;
+        report.iterations = p.iterations, report.failures = p.failures, report.allowed = p.allowed;
+        report.error = p.count > 0 ? p.error / p.count : 0;
+        return report;
+    }
 
 private:
+    SolveProgress progress() const {
+        SolveProgress p;
+        flow_.device.download(&p, progress_.data(), 1);
+        return p;
+    }
+
     Flow<Device>& flow_;
     Buffer<SolveError, Device> error_{flow_.device};
     Buffer<SolveProgress, Device> progress_{flow_.device};
-    SolveReport now_, last_;
 };
 
 }  // namespace spindrift::LANES

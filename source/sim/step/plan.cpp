@@ -18,8 +18,9 @@ void Plan::note(const std::string& name, const char* skipped) { told_.push_back(
 
 void Plan::beginLoop() { stretches_.emplace_back(); }
 
-void Plan::endLoop(std::function<bool()> until) {
+void Plan::endLoop(std::function<bool()> until, const int* again) {
     stretches_.back().until = std::move(until);
+    stretches_.back().again = again;
     stretches_.emplace_back();
 }
 

@@ -19,10 +19,12 @@ public:
         std::function<void()> run;
         Initial initial;
     };
-    // Rows that are run in turn, once or until `until` holds.
+    // Rows that are run in turn, once or until `until` holds. Where `again` is given, memory of the
+    // device, `until` says no more than that it is zero: devices that record steps look themselves.
     struct Stretch {
         std::vector<Row> rows;
         std::function<bool()> until;
+        const int* again = nullptr;
     };
 
     // A row; or `skipped`, the reason why there is none.
@@ -33,7 +35,7 @@ public:
     // Rows from beginLoop() to endLoop() are repeated until `until` holds, which is asked after
     // the last one.
     void beginLoop();
-    void endLoop(std::function<bool()> until);
+    void endLoop(std::function<bool()> until, const int* again = nullptr);
 
     const std::vector<Stretch>& stretches() const { return stretches_; }
     // All rows and notes, for people.

@@ -123,7 +123,7 @@ private:
         add("pressure forces", onPairsOrFluid<AccelerateByPressure<K, inner>>);
         add("relax pressure", onPairsOrFluid<RelaxPressure<K, inner>>);
         plan_.add("error", [&solver = solver_] { solver.findError(); });
-        plan_.endLoop([&solver = solver_] { return solver.isDone(); });
+        plan_.endLoop([&solver = solver_] { return !solver.goesOn(); }, solver_.goesOnFlag());
         plan_.add("shorten steps", [&solver = solver_] { solver.shortenSteps(); });
         add("pressure kick", onFluid<Integrate<PressureKick>>);
         addPartForces(Initial::No, true);

@@ -43,8 +43,9 @@ public:
         for (size_t k = 0; k < plan_.stretches().size(); ++k) {
             const Plan::Stretch& stretch = plan_.stretches()[k];
             if (stretch.rows.empty()) continue;
+            const bool loops = stretch.until && (measured || !stretch.again);
             do measured ? measure(stretch) : replay(stretch, recordings_[k]);
-            while (stretch.until && !stretch.until());
+            while (loops && !stretch.until());
         }
     }
 
@@ -78,10 +79,14 @@ private:
         if constexpr (Device::recordsSteps) {
             Recorded& own = recordings[sides()];
             if (device_.replay(own.recording)) return setSides(own.sidesAfter);
-            device_.record(own.recording, [&] {
+            const unsigned before = sides();
+            const auto rows = [&] {
                 for (const Plan::Row& row : stretch.rows) row.run();
-            });
+            };
+            device_.record(own.recording,
+                           [&] { stretch.again ? device_.repeat(stretch.again, rows) : rows(); });
             own.sidesAfter = sides();
+            CHECK(!stretch.again || own.sidesAfter == before);  // how often it ran is not known
         }
     }
     unsigned sides() const {

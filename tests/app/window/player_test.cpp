@@ -192,7 +192,7 @@ TEST(Player, BrokenFileChangesNothing) {
             finishLoading(player);
             ADD_FAILURE() << file << " was loaded";
         } catch (const Error& error) {
-            EXPECT_EQ(error.exit, Exit::Scene);
+            EXPECT_EQ(error.failure, Failure::Scene);
             EXPECT_NE(std::string(error.what()).find(file), std::string::npos) << error.what();
         }
     }

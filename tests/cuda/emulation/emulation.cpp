@@ -12,15 +12,20 @@
 #include <vector>
 
 using Work = std::function<void()>;
+struct EmulatedCondition {
+    unsigned atLaunch, value;
+};
 struct EmulatedGraph {
     std::vector<Work> work;
+    std::vector<std::shared_ptr<EmulatedCondition>> conditions;  // of its loops
+    EmulatedGraph* lastBody = nullptr;
 };
 struct EmulatedGraphExec {
     std::vector<Work> work;
 };
 struct EmulatedStream {
     std::vector<Work> queue;
-    std::unique_ptr<EmulatedGraph> recording;
+    EmulatedGraph* recording = nullptr;
 };
 struct EmulatedEvent {
     std::chrono::steady_clock::time_point time;
@@ -240,14 +245,55 @@ cudaError_t cudaStreamSynchronize(cudaStream_t s) {
     return alive();
 }
 cudaError_t cudaStreamBeginCapture(cudaStream_t s, cudaStreamCaptureMode) {
-    s->recording = std::make_unique<EmulatedGraph>();
+    s->recording = new EmulatedGraph;
     ++counts.recordings;
     return alive();
 }
 cudaError_t cudaStreamEndCapture(cudaStream_t s, cudaGraph_t* g) {
-    *g = s->recording.release();
+    *g = std::exchange(s->recording, nullptr);
     return alive();
 }
+cudaError_t cudaStreamBeginCaptureToGraph(cudaStream_t s, cudaGraph_t g, const cudaGraphNode_t*,
+                                          const cudaGraphEdgeData*, size_t, cudaStreamCaptureMode) {
+    s->recording = g;
+    return alive();
+}
+cudaError_t cudaStreamGetCaptureInfo(cudaStream_t s, cudaStreamCaptureStatus* status,
+                                     unsigned long long*, cudaGraph_t* g,
+                                     const cudaGraphNode_t** before, const cudaGraphEdgeData**,
+                                     size_t* count) {
+    *status = s->recording ? cudaStreamCaptureStatusActive : cudaStreamCaptureStatusNone;
+    *g = s->recording;
+    *before = nullptr, *count = 0;  // work is done in the order in which it was recorded
+    return alive();
+}
+cudaError_t cudaStreamUpdateCaptureDependencies(cudaStream_t, cudaGraphNode_t*,
+                                                const cudaGraphEdgeData*, size_t, unsigned) {
+    return alive();
+}
+cudaError_t cudaGraphConditionalHandleCreate(cudaGraphConditionalHandle* h, cudaGraph_t g,
+                                             unsigned atLaunch, unsigned) {
+    g->conditions.push_back(std::make_shared<EmulatedCondition>(atLaunch, atLaunch));
+    *h = g->conditions.back().get();
+    return alive();
+}
+cudaError_t cudaGraphAddNode(cudaGraphNode_t* node, cudaGraph_t g, const cudaGraphNode_t*,
+                             const cudaGraphEdgeData*, size_t, cudaGraphNodeParams* p) {
+    const auto body = std::make_shared<EmulatedGraph>();
+    const auto condition =
+        std::find_if(g->conditions.begin(), g->conditions.end(),
+                     [&](const auto& c) { return c.get() == p->conditional.handle; });
+    if (condition == g->conditions.end()) return cudaErrorInvalidValue;
+    g->lastBody = body.get();
+    p->conditional.phGraph_out = &g->lastBody;
+    *node = nullptr;
+    g->work.push_back([loop = *condition, body] {
+        for (loop->value = loop->atLaunch; loop->value != 0; ++counts.repeats)
+            for (const Work& w : body->work) w();
+    });
+    return alive();
+}
+void cudaGraphSetConditional(cudaGraphConditionalHandle h, unsigned value) { h->value = value; }
 cudaError_t cudaGraphDestroy(cudaGraph_t g) { return delete g, cudaSuccess; }
 cudaError_t cudaGraphInstantiate(cudaGraphExec_t* e, cudaGraph_t g, unsigned long long) {
     ++counts.instantiations;

@@ -18,7 +18,7 @@ inline Machine machine;
 // What has been done since the start of the program.
 struct Counts {
     int64_t kernels = 0, recordings = 0, instantiations = 0, replays = 0, allocations = 0,
-            registrations = 0, maps = 0;
+            registrations = 0, maps = 0, repeats = 0;
 };
 inline Counts counts;
 

@@ -20,12 +20,12 @@ protected:
     Scene scene = testScene("dam_break_small.json");
 };
 
-void expectError(const Scene& scene, Exit exit, const std::string& words) {
+void expectError(const Scene& scene, Failure failure, const std::string& words) {
     try {
         makeSimulation(scene)->step();
         FAIL() << "no error: " << words;
     } catch (const Error& error) {
-        EXPECT_EQ(error.exit, exit) << error.what();
+        EXPECT_EQ(error.failure, failure) << error.what();
         EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
         EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
     }
@@ -34,21 +34,21 @@ void expectError(const Scene& scene, Exit exit, const std::string& words) {
 TEST_F(EmulatedGpu, EveryWayToHaveNoGpuIsOneLine) {
     scene.compute.backend = Backend::Cuda;
     emulation::machine.driver = 0;
-    expectError(scene, Exit::NoDevice, "no NVIDIA driver");
+    expectError(scene, Failure::NoDevice, "no NVIDIA driver");
     emulation::machine.driver = 12040;
-    expectError(scene, Exit::NoDevice, "knows CUDA 12.4, this program needs 13.0");
+    expectError(scene, Failure::NoDevice, "knows CUDA 12.4, this program needs 13.0");
     emulation::machine = {};
     emulation::machine.devices = 0;
-    expectError(scene, Exit::NoDevice, "no CUDA device");
+    expectError(scene, Failure::NoDevice, "no CUDA device");
     emulation::machine = {};
     emulation::machine.codeFits = false;
-    expectError(scene, Exit::NoDevice, "SPINDRIFT_CUDA_ARCHITECTURES=90");
+    expectError(scene, Failure::NoDevice, "SPINDRIFT_CUDA_ARCHITECTURES=90");
     emulation::machine = {};
     scene.compute.device = 1;
-    expectError(scene, Exit::NoDevice, "no CUDA device 1; there are 1");
+    expectError(scene, Failure::NoDevice, "no CUDA device 1; there are 1");
     scene.compute.device = 0;
     scene.compute.precision = Precision::Double;
-    expectError(scene, Exit::NoDevice, "double precision");
+    expectError(scene, Failure::NoDevice, "double precision");
 }
 
 TEST_F(EmulatedGpu, AutoTakesTheGpuWhenThereIsOne) {
@@ -71,7 +71,7 @@ TEST_F(EmulatedGpu, ALostDeviceIsOneLineAndNothingHangs) {
         gpu->step(), gpu->measure();
         FAIL();
     } catch (const Error& error) {
-        EXPECT_EQ(error.exit, Exit::DeviceLost);
+        EXPECT_EQ(error.failure, Failure::DeviceLost);
         EXPECT_NE(std::string(error.what()).find("the GPU was lost"), std::string::npos)
             << error.what();
     }
@@ -84,7 +84,7 @@ TEST_F(EmulatedGpu, MemoryThatRunsOutInTheMiddleIsAnError) {
         try {
             start(scene);
             FAIL() << share;
-        } catch (const Error& error) { EXPECT_EQ(error.exit, Exit::Memory) << error.what(); }
+        } catch (const Error& error) { EXPECT_EQ(error.failure, Failure::Memory) << error.what(); }
     }
     emulation::machine = {};
     EXPECT_NO_THROW(start(scene)->step());
@@ -135,6 +135,32 @@ TEST_F(EmulatedGpu, StepsDontWaitForTheHost) {
     EXPECT_EQ(emulation::counts.kernels, before) << "something waited within a step";
     gpu->wait();
     EXPECT_GT(emulation::counts.kernels, before + 200);
+}
+
+// Nor does an iteration of the pressure solve: the device itself decides whether there is another.
+TEST_F(EmulatedGpu, IterationsDontWaitForTheHost) {
+    scene.simulation.formulation = Formulation::Incompressible;
+    const auto gpu = start(scene);
+    gpu->step(3);
+    int64_t iterations = 0;
+    for (int k = 0; k < 10; ++k) {
+        gpu->wait();
+        const emulation::Counts before = emulation::counts;
+        gpu->step();
+        EXPECT_EQ(emulation::counts.kernels, before.kernels) << "something waited within a step";
+        gpu->wait();
+        const int64_t repeats = emulation::counts.repeats - before.repeats;
+        EXPECT_EQ(repeats, gpu->measure().solve.iterations);
+        iterations += repeats;
+    }
+    EXPECT_GT(iterations, 15) << "too few iterations to show anything";
+    scene.solver.iterations = 2;
+    scene.solver.densityError = 1e-6;
+    gpu->apply(scene);
+    const int64_t before = emulation::counts.repeats, failures = gpu->measure().solve.failures;
+    gpu->step(5);
+    EXPECT_EQ(gpu->measure().solve.failures, failures + 5);
+    EXPECT_EQ(emulation::counts.repeats, before + 10) << "as many as are allowed";
 }
 
 // The benchmark is run by hand only, where there is a GPU.

@@ -1,4 +1,4 @@
-// Bugs abort with their place; mistakes carry their exit code.
+// Bugs abort with their place; mistakes say what they are about.
 #include "core/error.h"
 
 #include <gtest/gtest.h>
@@ -13,14 +13,16 @@ TEST(ErrorDeathTest, CheckNamesExpressionAndPlace) {
     CHECK(three > 2);
 }
 
-TEST(Error, KeepsWordsAndExitCode) {
-    const Error error(Exit::Memory, "too much");
+TEST(Error, KeepsWordsAndKind) {
+    const Error error(Failure::Memory, "too much");
     EXPECT_STREQ(error.what(), "too much");
-    EXPECT_EQ(int(error.exit), 7);
+    EXPECT_EQ(error.failure, Failure::Memory);
 }
 
 // Whatever it cites.
-TEST(Error, IsOneLine) { EXPECT_STREQ(Error(Exit::Scene, "a\nb\tc\x1b[0m").what(), "a b c [0m"); }
+TEST(Error, IsOneLine) {
+    EXPECT_STREQ(Error(Failure::Scene, "a\nb\tc\x1b[0m").what(), "a b c [0m");
+}
 
 }  // namespace
 }  // namespace spindrift

@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <optional>
 
 namespace spindrift {
 namespace {
@@ -22,11 +23,11 @@ protected:
         fs::temp_directory_path() / ("spindrift_output_" + std::to_string(getpid()));
 };
 
-Exit codeOf(const std::function<void()>& act) {
+std::optional<Failure> failureOf(const std::function<void()>& act) {
     try {
         act();
-    } catch (const Error& error) { return error.exit; }
-    return Exit::Ok;
+    } catch (const Error& error) { return error.failure; }
+    return std::nullopt;
 }
 
 TEST_F(OutputFile, WritesWholeFilesAndLeavesNothingElse) {
@@ -44,16 +45,17 @@ TEST_F(OutputFile, WritesWholeFilesAndLeavesNothingElse) {
 
 TEST_F(OutputFile, KeepsTheOldFileWhenTheNewOneFails) {
     fs::create_directory(folder_ / "taken");  // a folder can't be replaced by a file
-    EXPECT_EQ(codeOf([&] { writeText(folder_ / "taken", "text"); }), Exit::Output);
+    EXPECT_EQ(failureOf([&] { writeText(folder_ / "taken", "text"); }), Failure::Output);
     EXPECT_EQ(count(), 1u);
 }
 
 TEST_F(OutputFile, RefusesWhatCantBeWritten) {
-    EXPECT_EQ(codeOf([&] { requireWritable(folder_ / "missing" / "a.txt"); }), Exit::Output);
-    EXPECT_EQ(codeOf([&] { requireWritable(folder_); }), Exit::Output);
-    EXPECT_EQ(codeOf([&] { requireFolder("/proc/missing"); }), Exit::Output);
-    EXPECT_EQ(codeOf([&] { writeText(folder_ / "missing" / "a.txt", "text"); }), Exit::Output);
-    EXPECT_EQ(codeOf([&] { requireFolder(folder_ / "new" / "frames"); }), Exit::Ok);
+    EXPECT_EQ(failureOf([&] { requireWritable(folder_ / "missing" / "a.txt"); }), Failure::Output);
+    EXPECT_EQ(failureOf([&] { requireWritable(folder_); }), Failure::Output);
+    EXPECT_EQ(failureOf([&] { requireFolder("/proc/missing"); }), Failure::Output);
+    EXPECT_EQ(failureOf([&] { writeText(folder_ / "missing" / "a.txt", "text"); }),
+              Failure::Output);
+    EXPECT_EQ(failureOf([&] { requireFolder(folder_ / "new" / "frames"); }), std::nullopt);
     EXPECT_TRUE(fs::is_directory(folder_ / "new" / "frames"));
 }
 

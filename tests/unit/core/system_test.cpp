@@ -1,4 +1,5 @@
 // What systems do in their own way, as it is here.
+#include "core/system.h"
 #include "unit/core/systems.h"
 
 namespace spindrift {

@@ -27,7 +27,7 @@ TEST(Table, MissingFileIsAnError) {
     try {
         readTable(Data + "nothing.csv");
         FAIL();
-    } catch (const Error& error) { EXPECT_EQ(error.exit, Exit::Scene); }
+    } catch (const Error& error) { EXPECT_EQ(error.failure, Failure::Scene); }
 }
 
 TEST(Table, StrictTablesNameTheLineThatIsWrong) {

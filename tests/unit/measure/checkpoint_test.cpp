@@ -64,7 +64,7 @@ protected:
         try {
             return same(readCheckpoint(path), scene, state) ? "" : "another";
         } catch (const Error& error) {
-            EXPECT_EQ(error.exit, Exit::Scene);
+            EXPECT_EQ(error.failure, Failure::Scene);
             EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
             return error.what();
         }
@@ -178,7 +178,7 @@ TEST_F(Checkpoints, FullDiskKeepsTheLastOne) {
         writeCheckpoint(file, scene, later);
         ADD_FAILURE() << "was written";
     } catch (const Error& error) {
-        EXPECT_EQ(error.exit, Exit::Output);
+        EXPECT_EQ(error.failure, Failure::Output);
         EXPECT_NE(std::string(error.what()).find("is the disk full?"), std::string::npos)
             << error.what();
     }

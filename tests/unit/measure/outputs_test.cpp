@@ -99,7 +99,7 @@ protected:
         try {
             act();
         } catch (const Error& error) {
-            EXPECT_EQ(error.exit, Exit::Output);
+            EXPECT_EQ(error.failure, Failure::Output);
             EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
             return error.what();
         }

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <optional>
 
 #include <unistd.h>
 
@@ -28,14 +29,14 @@ Image gradient(int width, int height) {
     return image;
 }
 
-Exit exitOf(const std::function<void()>& action) {
+std::optional<Failure> failureOf(const std::function<void()>& action) {
     try {
         action();
     } catch (const Error& error) {
         EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
-        return error.exit;
+        return error.failure;
     }
-    return Exit::Ok;
+    return std::nullopt;
 }
 
 TEST_F(ImageFiles, WhatIsWrittenIsRead) {
@@ -46,20 +47,20 @@ TEST_F(ImageFiles, WhatIsWrittenIsRead) {
 }
 
 TEST_F(ImageFiles, UnwritablePlaceIsAnErrorAndLeavesNothing) {
-    EXPECT_EQ(exitOf([&] { writePng(path("no/such/folder/a.png"), gradient(4, 4)); }),
-              Exit::Output);
+    EXPECT_EQ(failureOf([&] { writePng(path("no/such/folder/a.png"), gradient(4, 4)); }),
+              Failure::Output);
     fs::create_directory(folder / "taken.png");
-    EXPECT_EQ(exitOf([&] { writePng(path("taken.png"), gradient(4, 4)); }), Exit::Output);
+    EXPECT_EQ(failureOf([&] { writePng(path("taken.png"), gradient(4, 4)); }), Failure::Output);
     EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1) << "a temporary file was left";
 }
 
 TEST_F(ImageFiles, MissingAndDamagedFilesAreErrors) {
-    EXPECT_EQ(exitOf([&] { readPng(path("missing.png")); }), Exit::Scene);
+    EXPECT_EQ(failureOf([&] { readPng(path("missing.png")); }), Failure::Scene);
     std::ofstream(path("text.png")) << "no picture";
-    EXPECT_EQ(exitOf([&] { readPng(path("text.png")); }), Exit::Scene);
+    EXPECT_EQ(failureOf([&] { readPng(path("text.png")); }), Failure::Scene);
     writePng(path("cut.png"), gradient(64, 64));
     fs::resize_file(path("cut.png"), 200);
-    EXPECT_EQ(exitOf([&] { readPng(path("cut.png")); }), Exit::Scene);
+    EXPECT_EQ(failureOf([&] { readPng(path("cut.png")); }), Failure::Scene);
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ std::string refusalOf(const Scene& s) {
         checkScene(s, "a.json");
         return "";
     } catch (const Error& error) {
-        EXPECT_EQ(error.exit, Exit::Scene);
+        EXPECT_EQ(error.failure, Failure::Scene);
         return error.what();
     }
 }

@@ -1,5 +1,6 @@
 // Scenes whose values are in range and still make no sense: each refused with path and remedy.
 #include "scene/check.h"
+#include "scene/memory.h"
 
 #include "core/error.h"
 #include "scene/json.h"
@@ -9,12 +10,13 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <optional>
 
 namespace spindrift {
 namespace {
 
 struct Verdict {
-    Exit exit;
+    std::optional<Failure> failure;
     std::string text;
 };
 Verdict verdict(const std::vector<std::string>& knobs) {
@@ -22,8 +24,8 @@ Verdict verdict(const std::vector<std::string>& knobs) {
     for (const std::string& knob : knobs) setKnob(scene, knob);
     try {
         checkScene(scene, "a.json");
-    } catch (const Error& error) { return {error.exit, error.what()}; }
-    return {Exit::Ok, ""};
+    } catch (const Error& error) { return {error.failure, error.what()}; }
+    return {std::nullopt, ""};
 }
 
 TEST(CheckScene, AcceptsTheDefaultsAndAllConfigs) {
@@ -123,7 +125,7 @@ TEST(CheckScene, RefusesNonsenseByPathAndRemedy) {
     };
     for (const auto& [knobs, words] : cases) {
         const Verdict v = verdict(knobs);
-        EXPECT_EQ(int(v.exit), int(Exit::Scene)) << words;
+        EXPECT_EQ(v.failure, Failure::Scene) << words;
         EXPECT_NE(v.text.find(words), std::string::npos) << words << "\nin: " << v.text;
     }
 }
@@ -131,7 +133,7 @@ TEST(CheckScene, RefusesNonsenseByPathAndRemedy) {
 TEST(CheckScene, RefusesABillionParticlesBeforeAllocating) {
     // 1.6 x 0.9 x 0.6 m at 1 mm is 162 million fluid particles; at 0.1 mm 162 billion.
     const Verdict large = verdict({"simulation.spacing=0.0001"});
-    EXPECT_EQ(int(large.exit), int(Exit::Memory));
+    EXPECT_EQ(large.failure, Failure::Memory);
     EXPECT_NE(large.text.find("a.json: simulation.spacing: "), std::string::npos) << large.text;
     EXPECT_NE(large.text.find("more than the 1000000000"), std::string::npos) << large.text;
 }
@@ -141,7 +143,7 @@ TEST(CheckScene, RefusesMoreThanTheMachinesMemory) {
     if (physical > 300e9) GTEST_SKIP() << "this machine could hold it";
     const Verdict heavy =
         verdict({"simulation.spacing=0.00056"});  // 923 million particles: over 300 GB
-    EXPECT_EQ(int(heavy.exit), int(Exit::Memory));
+    EXPECT_EQ(heavy.failure, Failure::Memory);
     EXPECT_NE(heavy.text.find("GiB of memory"), std::string::npos) << heavy.text;
 }
 

@@ -10,12 +10,12 @@
 namespace spindrift {
 namespace {
 
-// The message of the Error(Exit::Scene) that `act` throws; "" when it throws none.
+// The message of the Error(Failure::Scene) that `act` throws; "" when it throws none.
 std::string complaint(const std::function<void()>& act) {
     try {
         act();
     } catch (const Error& error) {
-        EXPECT_EQ(int(error.exit), int(Exit::Scene)) << error.what();
+        EXPECT_EQ(int(error.failure), int(Failure::Scene)) << error.what();
         EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos)
             << "one line: " << error.what();
         return error.what();

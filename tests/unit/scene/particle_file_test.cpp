@@ -37,7 +37,7 @@ protected:
         try {
             readParticles(path);
         } catch (const Error& error) {
-            EXPECT_EQ(error.exit, Exit::Scene);
+            EXPECT_EQ(error.failure, Failure::Scene);
             EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
             EXPECT_NE(std::string(error.what()).find(path), std::string::npos)
                 << "which file? " << error.what();
@@ -317,7 +317,7 @@ static std::string refusalOf(const Scene& scene) {
     try {
         checkScene(scene, "s.json");
     } catch (const Error& error) {
-        EXPECT_EQ(int(error.exit), int(Exit::Scene));
+        EXPECT_EQ(int(error.failure), int(Failure::Scene));
         return error.what();
     }
     return "";
@@ -470,7 +470,9 @@ TEST_F(ParticleFiles, FilesAreCountedForTheMemory) {
     try {
         checkScene(sceneOf(path, Formulation::Wcsph));
         ADD_FAILURE() << "was taken";
-    } catch (const Error& error) { EXPECT_EQ(int(error.exit), int(Exit::Memory)) << error.what(); }
+    } catch (const Error& error) {
+        EXPECT_EQ(int(error.failure), int(Failure::Memory)) << error.what();
+    }
 }
 
 }  // namespace
