@@ -90,15 +90,16 @@ configure: install
 	@test -f $(BUILD)/build.ninja || cmake -S . -B $(BUILD) -G Ninja --log-level=WARNING $(CMAKE_ARGS)
 
 # The other build system, from the same source lists: AddressSanitizer and UndefinedBehaviorSanitizer, over all but the
-# window's tests and the flows that take minutes with the checks in. One instruction set that every machine has, and double
+# window's tests and those that take minutes with the checks in. One instruction set that every machine has, and double
 # precision, are enough. (Optimization 3 takes four times as long to compile with the checks in.)
-LONG_FLOWS = HealthGuard.*:Rest.*:Plan.OfEachShippedScene:NeighbourLists.KeptListsMissNobody:Integrators.FlowsHaveTheirOrder:$\
-	Conservation.*:BlockTimeSteps.LetAPoolRest:*SumsAgreeAfterThreeHundredSteps*
+LONG_TESTS = HealthGuard.*:Rest.*:Plan.OfEachShippedScene:NeighbourLists.KeptListsMissNobody:Integrators.FlowsHaveTheirOrder:$\
+	Conservation.*:BlockTimeSteps.LetAPoolRest:MeshesAndFluid.HaveFluidPackedBesideThem:MeshSolids.AreTheSameInEachWriting:$\
+	*SumsAgreeAfterThreeHundredSteps*
 sanitize: install
 	@test -f build-sanitize/build.ninja || meson setup build-sanitize \
 		-Db_sanitize=address,undefined -Db_lundef=false -Doptimization=1 -Dsimd=sse
 	@ninja -C build-sanitize spindrift flap_example unit_tests render_tests emulated_cuda_tests
-	LSAN_OPTIONS=suppressions=$(CURDIR)/tests/lsan.supp GTEST_FILTER="-$(LONG_FLOWS)" \
+	LSAN_OPTIONS=suppressions=$(CURDIR)/tests/lsan.supp GTEST_FILTER="-$(LONG_TESTS)" \
 		meson test -C build-sanitize --no-rebuild --print-errorlogs --num-processes 2 unit render emulated_cuda example
 
 install:

@@ -21,14 +21,22 @@ enum class Exit {
 
 constexpr Exit exitOf(Failure failure) {
     switch (failure) {
-        case Failure::Usage: return Exit::Usage;
-        case Failure::Scene: return Exit::Scene;
-        case Failure::Output: return Exit::Output;
-        case Failure::NoDisplay: return Exit::NoDisplay;
-        case Failure::NoDevice: return Exit::NoDevice;
-        case Failure::Memory: return Exit::Memory;
-        case Failure::DeviceLost: return Exit::DeviceLost;
-        case Failure::Invalid: return Exit::Invalid;
+        case Failure::Usage:
+            return Exit::Usage;
+        case Failure::Scene:
+            return Exit::Scene;
+        case Failure::Output:
+            return Exit::Output;
+        case Failure::NoDisplay:
+            return Exit::NoDisplay;
+        case Failure::NoDevice:
+            return Exit::NoDevice;
+        case Failure::Memory:
+            return Exit::Memory;
+        case Failure::DeviceLost:
+            return Exit::DeviceLost;
+        case Failure::Invalid:
+            return Exit::Invalid;
     }
     return Exit::Internal;
 }

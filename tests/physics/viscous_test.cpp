@@ -45,7 +45,9 @@ TEST(Viscosity, LeavesWhatTurnsAsASolid) {
                      turning = angularMomentum(*simulation);
         runUntil(*simulation, 5);
         EXPECT_NEAR(simulation->measure().kineticEnergy / energy, 1, 0.02);
-        if (!shiftsParticles(scene)) EXPECT_NEAR(angularMomentum(*simulation) / turning, 1, 2e-4);
+        if (!shiftsParticles(scene)) {
+            EXPECT_NEAR(angularMomentum(*simulation) / turning, 1, 2e-4);
+        }
     }
 }
 

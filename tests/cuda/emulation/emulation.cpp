@@ -1,7 +1,7 @@
 #include "emulation.h"
 
+#include <boost/context/fiber.hpp>
 #include <sys/mman.h>
-#include <ucontext.h>
 
 #include <algorithm>
 #include <chrono>
@@ -57,37 +57,38 @@ void protect(int how) {
 
 // --- threads of a block: fibres that switch at barriers ---
 
-constexpr size_t stackBytes = 256 << 10;
-struct Fibre {
-    ucontext_t context{};
-    std::unique_ptr<char[]> stack{new char[stackBytes]};
-    bool done = true, waits = false;
-};
-std::vector<std::unique_ptr<Fibre>> fibres;
-ucontext_t scheduler;
-Fibre* running = nullptr;
 const Work* body = nullptr;
 
-void runFibre() {
-    (*body)();
-    running->done = true;
-    swapcontext(&running->context, &scheduler);
-}
+struct Fibre {
+    boost::context::fiber own, scheduler;
+    bool done = true, waits = false;
+
+    Fibre()
+        : own(std::allocator_arg, boost::context::fixedsize_stack(256 << 10),
+              [this](boost::context::fiber&& caller) {
+                  for (scheduler = std::move(caller);; leave()) {
+                      (*body)();
+                      done = true;
+                  }
+                  return std::move(scheduler);
+              }) {}
+    void enter() {
+        waits = false;
+        own = std::move(own).resume();
+    }
+    void leave() { scheduler = std::move(scheduler).resume(); }
+};
+std::vector<std::unique_ptr<Fibre>> fibres;
+Fibre* running = nullptr;
+
 void resume(unsigned thread) {
     threadIdx.x = thread;
     running = fibres[thread].get();
-    running->waits = false;
-    swapcontext(&scheduler, &running->context);
+    running->enter();
     running = nullptr;
 }
 void start(unsigned thread) {
-    Fibre& f = *fibres[thread];
-    f.done = false;
-    getcontext(&f.context);
-    f.context.uc_stack.ss_sp = f.stack.get();
-    f.context.uc_stack.ss_size = stackBytes;
-    f.context.uc_link = &scheduler;
-    makecontext(&f.context, runFibre, 0);
+    fibres[thread]->done = false;
     resume(thread);
 }
 
@@ -154,7 +155,7 @@ using namespace emulation;
 void __syncthreads() {
     if (!running) die("a barrier that the first thread did not reach");
     running->waits = true;
-    swapcontext(&running->context, &scheduler);
+    running->leave();
 }
 
 cudaError_t cudaGetDeviceCount(int* n) {

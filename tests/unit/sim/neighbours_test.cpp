@@ -24,11 +24,16 @@ struct Engine {
     bool cuda = false;
 };
 constexpr Engine Engines[] = {
+#ifndef SPINDRIFT_EMULATED_GPU  // where that is, these have been tried already
     {"avx512", Simd::Avx512, Precision::Float, 2e-5},
     {"avx2", Simd::Avx2, Precision::Float, 2e-5},
     {"sse", Simd::Sse, Precision::Float, 2e-5},
     {"double", Simd::Auto, Precision::Double, 1e-6},  // its input is rounded to float
+#endif
     {"CUDA device", Simd::Auto, Precision::Float, 2e-5, true}};
+
+// Others walk the rows of cells in each pass.
+bool keepsLists(const Engine& e) { return e.precision == Precision::Float && !e.cuda; }
 
 // The simulation, or nothing where this machine lacks the instructions or the GPU.
 std::unique_ptr<Simulation> tryMake(Scene scene, const Placement& p, const Engine& e,
@@ -307,6 +312,7 @@ TEST(NeighbourLists, KeptListsMissNobody) {
     for (int k = 0; k < 9 * int(std::size(Engines)); ++k) {
         const Space& space = k % 3 == 0 ? Box : k % 3 == 1 ? OtherSpaces[1] : OtherSpaces[3];
         const Engine& engine = Engines[k / 9];
+        if (!keepsLists(engine)) continue;
         SCOPED_TRACE(space.name);
         Scene scene = emptyBox(2.6f, Kernel::WendlandC2);
         put(scene, space);
@@ -340,6 +346,7 @@ TEST(HalfListSums, EqualSumsOverAllNeighbours) {
     for (const Engine& engine : Engines)
         for (const Space& space : {Box, OtherSpaces[1], OtherSpaces[3]})
             for (Cloud cloud : {Cloud::Random, Cloud::Clustered}) {
+                if (!keepsLists(engine)) continue;
                 SCOPED_TRACE(testing::Message() << engine.name << " " << space.name);
                 Scene scene = emptyBox(2.6f, Kernel::WendlandC2);
                 put(scene, space);
