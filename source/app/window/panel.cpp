@@ -145,6 +145,7 @@ void speed(Ui& ui) {
 void status(Ui& ui) {
     const Measurement& m = ui.player.measurement();
     speed(ui);
+    row("method", "{}", enumNames(Formulation{})[size_t(ui.player.scene.simulation.formulation)]);
     row("time", "{:.4f} s", m.time);
     row("steps", "{}, {:.0f} a second", m.steps, ui.player.stepsPerSecond());
     row("time step", "{:.3g} ms", 1e3 * m.dt);
@@ -161,6 +162,24 @@ void status(Ui& ui) {
     ImGui::TextColored(amber, "outside what the method is valid for:");
     for (const Remark& r : ui.player.remarks()) ImGui::TextUnformatted(r.text.c_str());
     ImGui::PopTextWrapPos();
+}
+
+// What a run that can't keep up spends its time on, and what would make it quicker.
+void slowness(Ui& ui) {
+    if (!ui.isSlow) return;
+    const Measurement& m = ui.player.measurement();
+    double each = 0;  // ms, a step
+    for (const PassTime& t : ui.times)
+        if (t.runs > 0) each += t.ms / double(t.runs);
+    ImGui::TextColored(amber, "can't keep up with the clock:");
+    if (m.dt > 0 && each > 0) text("a second takes {:.0f} steps of {:.2g} ms", 1 / m.dt, each);
+    if (const std::string passes = slowestPasses(ui.times); !passes.empty()) text("{}", passes);
+    const Remedy* taken = nullptr;
+    for (const Remedy& remedy : ui.remedies) {
+        if (ImGui::Button(remedy.label.c_str(), {-1, 0})) taken = &remedy;
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", remedy.help.c_str());
+    }
+    if (taken) ui.take(Remedy(*taken));
 }
 
 void passTimes(const Ui& ui) {
@@ -245,6 +264,7 @@ void panel(Ui& ui, int windowHeight) {
     transport(ui);
     ImGui::Spacing();
     status(ui);
+    slowness(ui);
     ImGui::Spacing();
     if (section("Curves", true)) curves(ui);
     knobs(ui);

@@ -102,8 +102,11 @@ void Player::load(const std::string& file) {
     resets_ = false;
 }
 
-void Player::reset() {
+void Player::reset() { beginAnew(origin_.scene); }
+
+void Player::beginAnew(Scene changed) {
     Start again = origin_;
+    again.scene = std::move(changed);
     again.scene.compute.backend = scene.compute.backend;  // it may have been switched
     loader_ = std::make_unique<Loader>([again = std::move(again)] { return again; });
     resets_ = true;
@@ -116,13 +119,17 @@ bool Player::takeLoaded() {
     return true;
 }
 
-void Player::switchBackend(Backend backend) {
+void Player::goOnWith(Formulation formulation, Backend backend) {
     while (stepper_->busy()) stepper_->wait(1);
-    Scene next = scene;
-    next.compute.backend = backend;
+    const auto with = [&](Scene s) {
+        s.simulation.formulation = formulation, s.compute.backend = backend;
+        return s;
+    };
+    const Scene next = with(inForce_);
     stepper_ =
         std::make_unique<Stepper>(makeSimulation(next, stepper_->simulation().state()), next);
-    scene.compute.backend = backend;
+    scene = with(scene), asked_ = with(asked_), inForce_ = next;
+    measurement_ = stepper_->measurement();
     stirWanted_ = holdWanted_ = false;
 }
 

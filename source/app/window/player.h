@@ -61,9 +61,11 @@ public:
     void cancelLoading() { loader_.reset(); }
     // True when the new run has begun. Throws Error when it can't; then nothing has changed.
     bool takeLoaded();
-    // Goes on from where the run stands, on the other device. Blocks until the step at hand is
-    // done. Throws Error; then nothing has changed.
-    void switchBackend(Backend);
+    // The same with other knobs than live ones: from here on that is the scene as it was loaded.
+    void beginAnew(Scene);
+    // Goes on from where the run stands with another formulation, or on another device. Blocks
+    // until the step at hand is done. Throws Error; then nothing has changed.
+    void goOnWith(Formulation, Backend);
 
     // True when the simulation is at hand: the requests are met, measurement() is new, simulation()
     // may be used until proceed(). `moved` tells whether steps were made since the last time.
@@ -88,6 +90,7 @@ public:
     const std::vector<Remark>& remarks() const { return validity_.remarks(); }
     const Scene& loadedScene() const { return origin_.scene; }
     const std::string& file() const { return origin_.file; }
+    bool beganFromCheckpoint() const { return origin_.state.has_value(); }
     double stepsPerSecond() const { return stepsPerSecond_; }
     double realTimeFactor() const { return realTimeFactor_; }  // simulated / wall time
     int generation() const { return generation_; }             // grows with every new run

@@ -137,9 +137,37 @@ void Ui::setStirRadius(float wanted) {
 void Ui::switchBackend() {
     if (!noGpu.empty()) return say("no GPU to switch to: " + noGpu, true);
     try {
-        player.switchBackend(onGpu ? Backend::Cpu : Backend::Cuda);
+        player.goOnWith(player.scene.simulation.formulation, onGpu ? Backend::Cpu : Backend::Cuda);
         noteDevice();
         say(std::string("goes on, on the ") + (onGpu ? "GPU" : "CPU"));
+    } catch (const Error& error) { say(error.what(), true); }
+}
+
+// Not for the moments in which a run begins or is disturbed.
+void Ui::noteWhetherSlow() {
+    const double factor = player.realTimeFactor(), wanted = double(player.scene.view.speed);
+    const bool late = player.running && factor > 0 && factor < 0.8 * wanted,
+               inTime = player.running && factor >= 0.95 * wanted;
+    if (isSlow ? !inTime : !late) slowSince = uiTime();
+    if (uiTime() - slowSince < 1.5) return;
+    isSlow = !isSlow, slowSince = uiTime();
+    remedies =
+        isSlow ? remediesFor(player.scene, player.beganFromCheckpoint()) : std::vector<Remedy>{};
+}
+
+void Ui::take(const Remedy& remedy) {
+    try {
+        if (remedy.how == Remedy::How::Again) {
+            player.beginAnew(remedy.scene);
+        } else if (remedy.how == Remedy::How::GoOn) {
+            player.goOnWith(remedy.scene.simulation.formulation, player.scene.compute.backend);
+            noteDevice();
+            say("goes on, and solves for pressures");
+        } else {
+            copyKnobs(player.scene, remedy.scene, KnobKind::Physics);
+            player.knobsChanged();
+        }
+        remedies = remediesFor(player.scene, player.beganFromCheckpoint());
     } catch (const Error& error) { say(error.what(), true); }
 }
 

@@ -2,6 +2,7 @@
 // What the window's parts share: the player, the picture, and what the user is doing.
 #include "app/frame.h"
 #include "app/window/player.h"
+#include "app/window/remedies.h"
 
 #include <SDL.h>
 
@@ -75,6 +76,10 @@ struct Ui {
     int fluidCount = 0, wallCount = 0;
     double drawMs = 0;  // of the last picture
 
+    bool isSlow = false;           // the run can't keep up with the clock
+    double slowSince = 0;          // s, since when that is or isn't so
+    std::vector<Remedy> remedies;  // while it is
+
     OrbitCamera camera() const;
     void moveCamera(const OrbitCamera&);
     void say(const std::string& text, bool error = false);
@@ -92,6 +97,8 @@ struct Ui {
     void setStirRadius(float);
     void switchBackend();
     void noteDevice();  // of a simulation that is new
+    void noteWhetherSlow();
+    void take(const Remedy&);
     void colorBy(ColorBy);
     void resetCamera();
     void takeScreenshot();

@@ -262,6 +262,7 @@ private:
             ui_.pickAt.reset();
         }
         readTimes();
+        ui_.noteWhetherSlow();
         // While one picture is drawn, the steps for the next are made; a slow picture leaves time
         // for more.
         constexpr double least = 0.012, most = 0.050;  // s
