@@ -24,10 +24,11 @@ void addIfAllowed(std::vector<Remedy>& all, Remedy remedy) {
 
 Remedy incompressible(Scene scene) {
     scene.simulation.formulation = Formulation::Incompressible;
-    return {"Solve for pressures",
-            "simulation.formulation = incompressible\nFrom here on steps are bounded by how fast the "
-            "fluid moves,\nnot by sound: fewer, longer ones. R brings the scene back as loaded.",
-            How::GoOn, std::move(scene)};
+    return {
+        "Solve for pressures",
+        "simulation.formulation = incompressible\nFrom here on steps are bounded by how fast the "
+        "fluid moves,\nnot by sound: fewer, longer ones. R brings the scene back as loaded.",
+        How::GoOn, std::move(scene)};
 }
 
 Remedy preview(Scene scene) {
@@ -42,7 +43,8 @@ Remedy coarser(Scene scene) {
     const double longer = scene.simulation.dimensions == 2 ? std::sqrt(2.0) : std::cbrt(2.0);
     scene.simulation.spacing = float(longer * double(scene.simulation.spacing));
     return {"Half as many particles",
-            fmt::format("simulation.spacing = {:.3g} m\nBegins anew, with longer steps as well.\nThe list of scenes has it as it was.",
+            fmt::format("simulation.spacing = {:.3g} m\nBegins anew, with longer steps as "
+                        "well.\nThe list of scenes has it as it was.",
                         scene.simulation.spacing),
             How::Again, std::move(scene)};
 }
@@ -55,8 +57,7 @@ std::vector<Remedy> remediesFor(const Scene& scene, bool isGoingOn) {
     // Pressures that are solved for don't pull: fluid that fills its space would tear.
     if (!facts.solvesPressure && !facts.isHistorical && !facts.fillsSpace)
         addIfAllowed(all, incompressible(scene));
-    if (facts.solvesPressure &&
-        (scene.solver.densityError < 0.01f || scene.time.cfl < 1))
+    if (facts.solvesPressure && (scene.solver.densityError < 0.01f || scene.time.cfl < 1))
         addIfAllowed(all, preview(scene));
     if (!isGoingOn) addIfAllowed(all, coarser(scene));
     return all;

@@ -62,8 +62,8 @@ TEST(Remedies, HalveTheParticles) {
         const auto all = remediesFor(scene, false);
         const Remedy* coarser = find(all, Remedy::How::Again);
         ASSERT_NE(coarser, nullptr);
-        const double left = double(countParticles(coarser->scene).fluid) /
-                            double(countParticles(scene).fluid);
+        const double left =
+            double(countParticles(coarser->scene).fluid) / double(countParticles(scene).fluid);
         EXPECT_NEAR(left, 0.5, 0.12) << name;
     }
 }
