@@ -36,21 +36,24 @@ static int deviceOfDisplay() {
 }
 
 int drawingDevice() {
-    if (const int device = deviceOfDisplay(); device != hostMemory) return device;
     unsigned count = 0;
     int device = hostMemory;
     if (cudaGLGetDevices(&count, &device, 1, cudaGLDeviceListAll) == cudaSuccess && count > 0)
         return device;
     cudaGetLastError();
-    return hostMemory;
+    return deviceOfDisplay();
 }
 
-void CudaLoan::begin(GLuint buffer, int device) {
+std::string CudaLoan::begin(GLuint buffer, int device) {
     end();
     require(cudaSetDevice(device), "choosing a device");
-    require(cudaGraphicsGLRegisterBuffer(&resource_, buffer, cudaGraphicsRegisterFlagsWriteDiscard),
-            "registering the vertex buffer");
+    const cudaError_t code =
+        cudaGraphicsGLRegisterBuffer(&resource_, buffer, cudaGraphicsRegisterFlagsWriteDiscard);
     device_ = device;
+    if (code == cudaSuccess) return "";
+    resource_ = nullptr;
+    cudaGetLastError();
+    return cudaGetErrorString(code);
 }
 
 void CudaLoan::end() {

@@ -3,16 +3,18 @@
 #include "core/vertex.h"
 #include "render/gl.h"
 
+#include <string>
+
 struct cudaGraphicsResource;
 
 namespace spindrift {
 
-// The CUDA device on which the current GL context draws; hostMemory where GL runs elsewhere or
-// there is no CUDA.
+// The CUDA device on which the current GL context draws, as CUDA says, and where it says nothing as
+// EGL does; hostMemory where GL runs elsewhere or there is no CUDA.
 int drawingDevice();
 
 // One GL buffer, registered with CUDA: costly, so it is done once and again only when the buffer
-// has grown. Errors of CUDA are Errors (DeviceLost).
+// has grown. Later errors of CUDA are Errors (DeviceLost).
 class CudaLoan {
 public:
     CudaLoan() = default;
@@ -21,7 +23,9 @@ public:
     CudaLoan& operator=(const CudaLoan&) = delete;
 
     bool begun() const { return resource_ != nullptr; }
-    void begin(GLuint buffer, int device);
+    // Why CUDA doesn't take the buffer, although it may be told that its device draws: "" when it
+    // does.
+    std::string begin(GLuint buffer, int device);
     void end();  // before the buffer gets other memory
 
     // Device memory, until unmap(); GL must not touch the buffer in between. unmap() is ordered

@@ -2,6 +2,9 @@
 
 #include "core/error.h"
 
+#include <cstdio>
+#include <string>
+
 namespace spindrift {
 
 void VertexBuffer::resize(int count) {
@@ -20,8 +23,16 @@ VertexMemory VertexBuffer::map(int device) {
     CHECK(!mapped());
     if (count_ == 0) return {nullptr, device};
     if (device != hostMemory && !drawingDevice_) drawingDevice_ = drawingDevice();
+    if (device != hostMemory && device == drawingDevice_ && !loan_.begun()) {
+        if (const std::string why = loan_.begin(buffer_, device); !why.empty()) {
+            std::fprintf(stderr,
+                         "spindrift: OpenGL and CUDA do not share their memory (%s): vertices are "
+                         "copied\n",
+                         why.c_str());
+            drawingDevice_ = hostMemory;
+        }
+    }
     if (device != hostMemory && device == drawingDevice_) {
-        if (!loan_.begun()) loan_.begin(buffer_, device);
         const VertexMemory memory{loan_.map(), device};
         mapped_ = Mapped::Device;
         return memory;

@@ -78,7 +78,7 @@ public:
         objects_.drive(driver);
         refresh(flow_.scene);
     }
-    void stopAt(double time) override { flow_.device.upload(&flow_.clock.data()->stop, &time, 1); }
+    void stopAt(double time) override { flow_.stopAt(time); }
     void step(int count) override {
         for (int k = 0; k < count; ++k) stepOnce();
     }

@@ -9,6 +9,8 @@
 #include "emulation.h"
 #endif
 
+#include <algorithm>
+
 namespace spindrift {
 namespace {
 
@@ -121,6 +123,25 @@ TEST_F(Interop, WhereGlRunsElsewhereVerticesAreCopied) {
     simulation->step(3);
     frame.update(*simulation, scene);
     frame.draw(scene);
+    EXPECT_TRUE(frame.copiesVertices());
+    const Image copied = frame.image();
+    emulation::machine = {};
+    Frame direct(200, 150, 1);
+    direct.update(*simulation, scene);
+    direct.draw(scene);
+    EXPECT_EQ(copied, direct.image());
+}
+
+// CUDA may say that its device draws and refuse the buffer all the same.
+TEST_F(Interop, WhereCudaRefusesTheBufferVerticesAreCopiedAndThatIsSaidOnce) {
+    emulation::machine.sharesMemory = false;
+    Frame frame(200, 150, 1);
+    simulation->step(3);
+    testing::internal::CaptureStderr();
+    for (int k = 0; k < 3; ++k) frame.update(*simulation, scene), frame.draw(scene);
+    const std::string said = testing::internal::GetCapturedStderr();
+    EXPECT_NE(said.find("do not share their memory"), std::string::npos) << said;
+    EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
     EXPECT_TRUE(frame.copiesVertices());
     const Image copied = frame.image();
     emulation::machine = {};

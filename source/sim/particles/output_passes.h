@@ -142,4 +142,17 @@ struct SumUp {
     }
 };
 
+// Where a particle is: its slot's number, from 1 on; 0 where there is none.
+struct SlotFound {
+    int number = 0;
+    HD_OUT void add(const SlotFound& o) { number += o.number; }
+};
+struct FindSlot {
+    const int* id;
+    int wanted;
+    HD void addTo(SlotFound& found, int slot) const {
+        if (id[slot] == wanted) found.add({slot + 1});
+    }
+};
+
 }  // namespace spindrift::LANES

@@ -170,9 +170,9 @@ public:
     }
     // Only the slots around the particle with this id are fetched.
     Particle downloadOne(int id, Vec3 origin) const {
-        const std::vector<int> ids = copy(id_);
-        const int slot = int(std::find(ids.begin(), ids.end(), id) - ids.begin());
-        CHECK(slot < slots_);
+        const int slot =
+            device_.template sum<SlotFound>(slots_, FindSlot{id_.data(), id}).number - 1;
+        CHECK(slot >= 0 && slot < slots_);
         const int first = slot / clusterSize * clusterSize;
         auto vectors = [&](VectorField Particles::*field) {
             return copy(now(field), vectorOffset(first, 0), vectorSize(clusterSize));
@@ -184,7 +184,7 @@ public:
                           a = vectors(&Particles::acceleration), rho = numbers(&Particles::density),
                           term = numbers(&Particles::pressureOverRho2), ratio;
         if (holds_.mixture) ratio = numbers(&Particles::massRatio);
-        std::vector<int> own(ids.begin() + first, ids.begin() + first + clusterSize);
+        std::vector<int> own = copy(id_, size_t(first), size_t(clusterSize));
         const Particles host = onHost(clusterSize, own, x, u, a, rho, term, ratio);
         return describe(host, slot - first, origin);
     }

@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -142,7 +143,14 @@ template <class Device> struct Flow {
         device.download(&s, clock.data(), 1);
         return s;
     }
-    void setClock(const StepState& s) { device.upload(clock.data(), &s, 1); }
+    void setClock(const StepState& s) {
+        device.upload(clock.data(), &s, 1);
+        stop = s.stop;
+    }
+    // Runs ask for the same time step by step, which costs a GPU nothing.
+    void stopAt(double time) {
+        if (std::exchange(stop, time) != time) device.upload(&clock.data()->stop, &time, 1);
+    }
     // A mixture's knobs, particle by particle.
     void fillMixture() {
         if (!isMultiFluid(scene) || fluid.slots() == 0) return;
@@ -174,6 +182,7 @@ template <class Device> struct Flow {
     ParticleSet<Device> fluid{device, Kind::Fluid}, walls{device, Kind::Walls};
     NeighbourSearch<Device> search;
     Buffer<StepState, Device> clock{device};
+    double stop = std::numeric_limits<double>::quiet_NaN();  // the clock's, once it has been set
     Buffer<Extremes, Device> extremes{device};
     bool showsSurface = false;  // a picture has asked
     // What parts show to all passes.

@@ -12,6 +12,7 @@ struct Machine {
     bool lost = false;                // everything fails from now on
     bool reversed = false;            // blocks and threads run last to first
     bool drawsToo = true;             // the GL context is on this GPU
+    bool sharesMemory = true;         // with that context
 };
 inline Machine machine;
 

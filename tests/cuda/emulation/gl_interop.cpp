@@ -18,7 +18,7 @@ cudaError_t cudaGLGetDevices(unsigned* count, int* devices, unsigned most, cudaG
 cudaError_t cudaGraphicsGLRegisterBuffer(cudaGraphicsResource** r, GLuint buffer, unsigned) {
     GLint64 bytes = 0;
     glGetNamedBufferParameteri64v(buffer, GL_BUFFER_SIZE, &bytes);
-    if (machine.lost || bytes == 0) return cudaErrorInvalidValue;
+    if (machine.lost || !machine.sharesMemory || bytes == 0) return cudaErrorInvalidValue;
     *r = new cudaGraphicsResource{buffer, nullptr, bytes};
     ++counts.registrations;
     return cudaSuccess;
