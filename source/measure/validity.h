@@ -17,7 +17,8 @@ struct Remark {
 std::string keyOf(const std::string& remark);
 
 // Of a scene, before it runs: a support, a body of fluid or a gap of fewer than two spacings; a
-// rod so thin that fluid on its two sides is within a support radius, so that each feels the other.
+// rod so thin that fluid on its two sides is within a support radius, so that each feels the other;
+// pressures that are solved for where there is no free surface.
 std::vector<std::string> remarksOn(const Scene&);
 
 // Watches one run: the scene's remarks, and those of what is measured. A weakly compressible fluid

@@ -53,6 +53,19 @@ TEST(Validity, BodiesNeedTwoSpacingsAlongEachAxis) {
     EXPECT_TRUE(remarksOn(flat).empty());
 }
 
+TEST(Validity, PressuresThatAreSolvedForNeedAFreeSurface) {
+    for (const int dimensions : {2, 3})
+        for (const char* formulation : {"wcsph", "incompressible"})
+            for (const float height : {0.5f, 0.9f, 1.0f}) {
+                Scene s = sceneOf({std::string("simulation.formulation=") + formulation,
+                                   "simulation.dimensions=" + std::to_string(dimensions)});
+                s.fluid.bodies[0].min = {0, 0, 0}, s.fluid.bodies[0].max = {1, height, 1};
+                EXPECT_EQ(says(remarksOn(s), "use transport_velocity"),
+                          height == 1 && formulation == std::string("incompressible"))
+                    << formulation << " " << height << " " << dimensions;
+            }
+}
+
 TEST(Validity, SupportsNeedTwoSpacings) {
     for (const float support : {1.5f, 1.9f, 2.0f, 2.6f, 3.2f}) {
         Scene s = sceneOf({});
