@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <utility>
 
 namespace spindrift {
@@ -174,12 +175,12 @@ void slowness(Ui& ui) {
     ImGui::TextColored(amber, "can't keep up with the clock:");
     if (m.dt > 0 && each > 0) text("a second takes {:.0f} steps of {:.2g} ms", 1 / m.dt, each);
     if (const std::string passes = slowestPasses(ui.times); !passes.empty()) text("{}", passes);
-    const Remedy* taken = nullptr;
+    std::optional<Remedy::How> taken;
     for (const Remedy& remedy : ui.remedies) {
-        if (ImGui::Button(remedy.label.c_str(), {-1, 0})) taken = &remedy;
+        if (ImGui::Button(remedy.label.c_str(), {-1, 0})) taken = remedy.how;
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", remedy.help.c_str());
     }
-    if (taken) ui.take(Remedy(*taken));
+    if (taken) ui.take(*taken);
 }
 
 void passTimes(const Ui& ui) {

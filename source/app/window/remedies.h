@@ -16,8 +16,8 @@ struct Remedy {
     How how;
     Scene scene;  // with it
 };
-// Those that this scene can have: none that is there already or that checkScene refuses.
-// `isGoingOn`: the run began from a checkpoint, which can't begin anew.
+// Those that this scene can have, one of a kind: none that is there already or that checkScene
+// refuses. `isGoingOn`: the run began from a checkpoint, which can't begin anew.
 std::vector<Remedy> remediesFor(const Scene&, bool isGoingOn);
 
 // The two passes that take most of a step, with their shares: "forces 41 %, density 25 %".

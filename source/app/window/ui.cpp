@@ -53,6 +53,7 @@ void Ui::takeLoaded() {
         if (!player.takeLoaded()) return;
         picked.reset();
         pickedSolid = -1;
+        isSlow = false, slowSince = uiTime();
         if (player.file() != before) {
             knobs = KnobHistory(player.scene);
             say("loaded " + player.file());
@@ -143,7 +144,7 @@ void Ui::switchBackend() {
     } catch (const Error& error) { say(error.what(), true); }
 }
 
-// Not for the moments in which a run begins or is disturbed.
+// What lasts: not the moments in which a run begins or is disturbed.
 void Ui::noteWhetherSlow() {
     const double factor = player.realTimeFactor(), wanted = double(player.scene.view.speed);
     const bool late = player.running && factor > 0 && factor < 0.8 * wanted,
@@ -155,20 +156,29 @@ void Ui::noteWhetherSlow() {
         isSlow ? remediesFor(player.scene, player.beganFromCheckpoint()) : std::vector<Remedy>{};
 }
 
+void Ui::take(Remedy::How how) {
+    // Of the scene as it is now: knobs may have changed since the remedies were offered.
+    for (const Remedy& remedy : remediesFor(player.scene, player.beganFromCheckpoint())) {
+        if (remedy.how != how) continue;
+        try {
+            take(remedy);
+        } catch (const Error& error) { say(error.what(), true); }
+    }
+    remedies = remediesFor(player.scene, player.beganFromCheckpoint());
+}
+
 void Ui::take(const Remedy& remedy) {
-    try {
-        if (remedy.how == Remedy::How::Again) {
-            player.beginAnew(remedy.scene);
-        } else if (remedy.how == Remedy::How::GoOn) {
+    switch (remedy.how) {
+        case Remedy::How::Again:
+            return player.beginAnew(remedy.scene);
+        case Remedy::How::GoOn:
             player.goOnWith(remedy.scene.simulation.formulation, player.scene.compute.backend);
             noteDevice();
-            say("goes on, and solves for pressures");
-        } else {
+            return say("goes on, and solves for pressures");
+        case Remedy::How::Live:
             copyKnobs(player.scene, remedy.scene, KnobKind::Physics);
-            player.knobsChanged();
-        }
-        remedies = remediesFor(player.scene, player.beganFromCheckpoint());
-    } catch (const Error& error) { say(error.what(), true); }
+            return player.knobsChanged();
+    }
 }
 
 void Ui::noteDevice() {

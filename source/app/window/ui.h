@@ -98,7 +98,7 @@ struct Ui {
     void switchBackend();
     void noteDevice();  // of a simulation that is new
     void noteWhetherSlow();
-    void take(const Remedy&);
+    void take(Remedy::How);
     void colorBy(ColorBy);
     void resetCamera();
     void takeScreenshot();
@@ -108,6 +108,9 @@ struct Ui {
     void grab();           // likewise
     void refreshPicked();  // likewise
     std::vector<Ring> rings() const;
+
+private:
+    void take(const Remedy&);
 };
 
 // What Esc does: the first that there is to do.
