@@ -128,6 +128,7 @@ void Player::goOnWith(Formulation formulation, Backend backend) {
     const Scene next = with(inForce_);
     stepper_ =
         std::make_unique<Stepper>(makeSimulation(next, stepper_->simulation().state()), next);
+    if (formulation != scene.simulation.formulation) validity_ = Validity(next);
     scene = with(scene), asked_ = with(asked_), inForce_ = next;
     measurement_ = stepper_->measurement();
     stirWanted_ = holdWanted_ = false;

@@ -139,5 +139,22 @@ TEST(Remedies, ThePlayerTakesThem) {
     EXPECT_EQ(player.loadedScene().simulation.spacing, coarser.simulation.spacing);
 }
 
+// What is outside of what a formulation is valid for is said as soon as it is in force.
+TEST(Remedies, RemarksAreThoseOfTheFormulation) {
+    Scene scene = shipped("test/still_pool_small");
+    scene.fluid.bodies = {Body{{.min = scene.domain.min, .max = scene.domain.max}}};
+    Player player(Loader([&] { return Start{scene, {}}; }).take());
+    const auto saysSo = [&] {
+        for (const Remark& r : player.remarks())
+            if (r.text.find("use transport_velocity") != std::string::npos) return true;
+        return false;
+    };
+    EXPECT_FALSE(saysSo());
+    player.goOnWith(Formulation::Incompressible, Backend::Cpu);
+    EXPECT_TRUE(saysSo());
+    player.goOnWith(Formulation::Wcsph, Backend::Cpu);
+    EXPECT_FALSE(saysSo());
+}
+
 }  // namespace
 }  // namespace spindrift
