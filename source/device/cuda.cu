@@ -301,19 +301,16 @@ Cuda::Loop Cuda::beginLoop() {
     return loop;
 }
 
-void Cuda::endLoop(const Loop& loop, const int* again) {
+void Cuda::noteCondition(const Loop& loop, const int* again) {
     launch(decideLoop, 1, 1, loop.condition, again);
+}
+
+cudaError_t Cuda::leaveLoop(const Loop& loop) {
     cudaGraph_t body = nullptr;  // belongs to the loop's node
     const cudaError_t ended = cudaStreamEndCapture(stream_, &body);
     cudaStreamDestroy(std::exchange(stream_, loop.around));
-    requireCuda(ended, "recording a loop");
-}
-
-void Cuda::leaveLoop(const Loop& loop) {
-    cudaGraph_t body = nullptr;
-    cudaStreamEndCapture(stream_, &body);
-    cudaStreamDestroy(std::exchange(stream_, loop.around));
-    cudaGetLastError();
+    if (ended != cudaSuccess) cudaGetLastError();
+    return ended;
 }
 
 // --- clocks ---

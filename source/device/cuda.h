@@ -174,11 +174,12 @@ public:
         const Loop loop = beginLoop();
         try {
             f();
+            noteCondition(loop, again);
         } catch (...) {
             leaveLoop(loop);
             throw;
         }
-        endLoop(loop, again);
+        requireCuda(leaveLoop(loop), "recording a loop");
     }
 
     template <class F> void step(const F& f) { f(); }
@@ -239,8 +240,8 @@ private:
         cudaGraphConditionalHandle condition;
     };
     Loop beginLoop();
-    void endLoop(const Loop&, const int* again);
-    void leaveLoop(const Loop&);
+    void noteCondition(const Loop&, const int* again);
+    cudaError_t leaveLoop(const Loop&);
     cudaEvent_t mark();
     std::vector<double> intervals(const std::vector<cudaEvent_t>&);
 

@@ -50,12 +50,9 @@ void addBodies(const Scene& scene, std::vector<std::string>& out) {
 
 // Without a free surface there is no pressure to begin from, and particles that only follow the
 // flow line up along it: energy is lost (vortices at Re 100: 38 % of it in half a time unit).
-void addFullness(const Scene& scene, std::vector<std::string>& out) {
+void addLackOfSurface(const Scene& scene, std::vector<std::string>& out) {
     if (!factsOf(scene).solvesPressure || !scene.solids.empty()) return;
-    const Vec3d size = scene.domain.size();
-    const bool isFlat = scene.simulation.dimensions == 2;
-    const double dx = scene.simulation.spacing, room = size.x * size.y * (isFlat ? dx : size.z);
-    if (double(countParticles(scene).fluid) * dx * dx * dx > 0.97 * room)
+    if (shareFilled(scene, countParticles(scene)) > 0.97)
         out.push_back(
             "simulation.formulation: incompressible loses energy where fluid fills the "
             "domain, because its particles are not shifted; use transport_velocity, or "
@@ -156,7 +153,7 @@ std::vector<std::string> remarksOn(const Scene& scene) {
             scene.simulation.support, FewestSpacings,
             factsOf(scene).isHistorical ? ", in another formulation" : ""));
     addBodies(scene, out);
-    addFullness(scene, out);
+    addLackOfSurface(scene, out);
     std::vector<Convex> shapes;
     for (const Solid& solid : scene.solids)
         shapes.push_back(convexOf(solid, scene.simulation.dimensions));

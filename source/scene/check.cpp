@@ -82,10 +82,7 @@ void checkDomain(const Scene& scene) {
 // not feel a surface.
 void checkFills(const Scene& scene, ParticleCount count) {
     if (!factsOf(scene).fillsSpace) return;
-    const Vec3d size = toDouble(scene.domain.max) - toDouble(scene.domain.min);
-    const double dx = scene.simulation.spacing,
-                 depth = scene.simulation.dimensions == 2 ? dx : size.z;
-    const double filled = double(count.fluid) * dx * dx * dx / (size.x * size.y * depth);
+    const double filled = shareFilled(scene, count);
     if (filled < 0.9)
         refuse("simulation.formulation",
                fmt::format("transport_velocity has no free surfaces, and fluid fills {:.0f} % of "

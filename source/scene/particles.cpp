@@ -335,6 +335,13 @@ static double mostInSolid(const Scene& scene, const Solid& solid) {
     return all - inner;
 }
 
+double shareFilled(const Scene& scene, ParticleCount count) {
+    const Vec3d size = scene.domain.size();
+    const double dx = scene.simulation.spacing,
+                 depth = scene.simulation.dimensions == 2 ? dx : size.z;
+    return double(count.fluid) * dx * dx * dx / (size.x * size.y * depth);
+}
+
 ParticleCount countParticles(const Scene& scene) {
     ParticleCount count;
     const Vec3d step = latticeStep(scene);

@@ -55,6 +55,9 @@ inline ParticleCount countOf(const Placement& p) {
 // can't be read.
 ParticleCount countParticles(const Scene&);
 
+// Of the domain, by the volume of so many fluid particles.
+double shareFilled(const Scene&, ParticleCount);
+
 // How many cells of a spacing's width the box around the bodies has: what relaxed places take time
 // by.
 double relaxedCells(const Scene&);

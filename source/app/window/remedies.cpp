@@ -1,6 +1,7 @@
 #include "app/window/remedies.h"
 
 #include "core/error.h"
+#include "measure/validity.h"
 #include "scene/check.h"
 #include "scene/formulation.h"
 
@@ -15,11 +16,12 @@ namespace {
 
 using How = Remedy::How;
 
-void addIfAllowed(std::vector<Remedy>& all, Remedy remedy) {
+// Nor one that would be outside its validity where the scene is not.
+void addIfAllowed(std::vector<Remedy>& all, const Scene& scene, Remedy remedy) {
     try {
         checkScene(remedy.scene);
     } catch (const Error&) { return; }
-    all.push_back(std::move(remedy));
+    if (remarksOn(remedy.scene).size() <= remarksOn(scene).size()) all.push_back(std::move(remedy));
 }
 
 Remedy incompressible(Scene scene) {
@@ -54,12 +56,11 @@ Remedy coarser(Scene scene) {
 std::vector<Remedy> remediesFor(const Scene& scene, bool isGoingOn) {
     std::vector<Remedy> all;
     const FormulationFacts& facts = factsOf(scene);
-    // Pressures that are solved for don't pull: fluid that fills its space would tear.
-    if (!facts.solvesPressure && !facts.isHistorical && !facts.fillsSpace)
-        addIfAllowed(all, incompressible(scene));
+    if (!facts.solvesPressure && !facts.isHistorical)
+        addIfAllowed(all, scene, incompressible(scene));
     if (facts.solvesPressure && (scene.solver.densityError < 0.01f || scene.time.cfl < 1))
-        addIfAllowed(all, preview(scene));
-    if (!isGoingOn) addIfAllowed(all, coarser(scene));
+        addIfAllowed(all, scene, preview(scene));
+    if (!isGoingOn) addIfAllowed(all, scene, coarser(scene));
     return all;
 }
 

@@ -16,8 +16,9 @@ struct Remedy {
     How how;
     Scene scene;  // with it
 };
-// Those that this scene can have, one of a kind: none that is there already or that checkScene
-// refuses. `isGoingOn`: the run began from a checkpoint, which can't begin anew.
+// Those that this scene can have, one of a kind: none that is there already, that checkScene
+// refuses, or that would bring a remark (measure/validity.h). `isGoingOn`: the run began from a
+// checkpoint, which can't begin anew.
 std::vector<Remedy> remediesFor(const Scene&, bool isGoingOn);
 
 // The two passes that take most of a step, with their shares: "forces 41 %, density 25 %".
