@@ -99,7 +99,8 @@ const std::map<std::string, Work> works = {{"sort", {0, 114}},
 void printPasses(int particles, double gflops, double gigabytes) {
     const double spacing = std::cbrt(0.6 * 0.48 * 0.6 / particles);
     const Scene scene =
-        chooseScene("dam_break", {{"bench", "simulation.spacing", fmt::format("{}", spacing)},
+        chooseScene("dam_break", {{"bench", "simulation.formulation", "wcsph"},
+                                  {"bench", "simulation.spacing", fmt::format("{}", spacing)},
                                   {"bench", "walls.kind", "reflect"},
                                   {"bench", "fluid.viscosity", "0"},
                                   {"bench", "compute.skin", "0"},

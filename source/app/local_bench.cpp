@@ -76,7 +76,8 @@ Run runFor(const std::string& name, const Scene& scene, const RunState& state, d
 
 Scene sceneOf(const std::string& name,
               const std::vector<std::pair<std::string, std::string>>& knobs) {
-    std::vector<KnobChoice> choices = {{"bench", "compute.backend", "cpu"}};
+    std::vector<KnobChoice> choices = {{"bench", "compute.backend", "cpu"},
+                                       {"bench", "simulation.formulation", "wcsph"}};
     for (const auto& [path, value] : knobs) choices.push_back({"bench", path, value});
     return chooseScene(name, choices);
 }

@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "render/egl_context.h"
 #include "scene/check.h"
+#include "scene/formulation.h"
 #include "scene/schema.h"
 #include "sim/simulation.h"
 
@@ -52,10 +53,10 @@ Pace paceOf(const Scene& scene, Frame* frame) {
             looks > 0 ? double(iterations) / double(looks) : 0};
 }
 
-// Nothing where the scene has what that formulation can't.
-std::optional<Scene> incompressibleOf(Scene scene) {
-    if (scene.simulation.formulation == Formulation::Incompressible) return {};
-    scene.simulation.formulation = Formulation::Incompressible;
+// The same with pressures that are solved for, or without; nothing where the scene can't have it.
+std::optional<Scene> otherWayOf(Scene scene) {
+    scene.simulation.formulation =
+        factsOf(scene).solvesPressure ? Formulation::Wcsph : Formulation::Incompressible;
     scene.time.mode = TimeMode::Cfl, scene.time.integrator = Integrator::SymplecticEuler;
     try {
         checkScene(scene, scene.name);
@@ -86,8 +87,7 @@ int benchRealTime(const std::string& only) {
         if (name.find(only) == std::string::npos) continue;
         const Scene scene = chooseScene(name, {{"bench", "compute.backend", "cpu"}});
         printPace(name, scene, frame);
-        if (const std::optional<Scene> other = incompressibleOf(scene))
-            printPace("", *other, frame);
+        if (const std::optional<Scene> other = otherWayOf(scene)) printPace("", *other, frame);
     }
     return int(Exit::Ok);
 }

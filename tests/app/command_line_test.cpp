@@ -169,8 +169,9 @@ TEST_F(CommandLine, ProbesAreColumnsInEveryFormat) {
         R"( --set 'output.probes=[{"name":"wall","position":[0,0.1,0.3]},{"kind":"height",)"
         R"("name":"gauge","position":[0.1,0,0.3]}]')";
     const Outcome outcome = call(
-        "dam_break --headless --backend cpu --quiet --set simulation.spacing=0.04 --steps 30 "
-        "--csv run.csv --json run.json --hdf5 run.h5 --set output.sample_every=0.001 --frames "
+        "dam_break --headless --backend cpu --quiet --set simulation.spacing=0.04 "
+        "--set simulation.formulation=wcsph --steps 30 --csv run.csv --json run.json --hdf5 run.h5 "
+        "--set output.sample_every=0.001 --frames "
         "frames --size 64x48" +
         probes);
     ASSERT_EQ(outcome.code, 0) << outcome.text;

@@ -3,6 +3,7 @@
 // without one, and for the emulated one, which takes smaller scenes.
 #include "device/cuda_devices.h"
 #include "scene/check.h"
+#include "scene/formulation.h"
 #include "scene/json.h"
 #include "scene/particles.h"
 #include "scene/thin_solid.h"
