@@ -4,7 +4,7 @@ BUILD ?= build
 ARGS ?=
 CMAKE_ARGS ?=
 
-.PHONY: run test build configure bench validate stress fuzz documents knobs program gpu-check gpu-bundle sanitize check-format check-headers format release library install clean
+.PHONY: run test build configure bench validate stress fuzz documents knobs program gpu-check gpu-bundle python sanitize check-format check-headers format release library install clean
 
 # Only what it needs: the tests are built by `make build`.
 run: program
@@ -82,6 +82,11 @@ gpu-check: $(if $(BUNDLE),,build)
 # The programs that gpu-check needs and their libraries, in one folder that runs on other machines.
 gpu-bundle: build
 	tests/cuda/bundle.sh $(BUILD) $(or $(BUNDLE),$(BUILD)-bundle)
+
+# import spindrift; PREFIX=/usr/local installs it there, else: PYTHONPATH=build/python python3
+python: configure
+	@cmake --build $(BUILD) --target spindrift_python
+	$(if $(PREFIX),cmake --install $(BUILD) --prefix $(PREFIX) --component python)
 
 build: configure
 	@cmake --build $(BUILD)

@@ -41,6 +41,9 @@ constexpr Shortcut Shortcuts[] = {
     {"--screenshot", "output.screenshot", "FILE", "saves the last state as PNG"},
     {"--color", "view.color_by", "QUANTITY", "what colours the particles"},
     {"--frames", "output.frames", "FOLDER", "saves a PNG for each frame"},
+    {"--video", "output.video", "FILE", "a film of the run: mp4, mkv, webm (needs ffmpeg)"},
+    {"--series", "output.series", "FILE",
+     "particles at every frame, for ParaView and others: pvd, xdmf, ply, csv"},
     {"--fps", "output.fps", "RATE", "frames and rows a second of simulated time"},
     {"--csv", "output.csv", "FILE", "time series as CSV, - = standard output"},
     {"--json", "output.json", "FILE", "time series as JSON, - = standard output"},
@@ -123,8 +126,9 @@ int runScene(const RunOptions& options) {
 #ifdef SPINDRIFT_WINDOW
     if (!scene.output.headless) {
         const Output& output = scene.output;
-        for (const std::string& wanted : {output.screenshot, output.frames, output.csv, output.json,
-                                          output.hdf5, output.particles, output.checkpoint})
+        for (const std::string& wanted :
+             {output.screenshot, output.frames, output.video, output.csv, output.json, output.hdf5,
+              output.particles, output.series, output.checkpoint})
             if (!wanted.empty())
                 fmt::print(stderr, "spindrift: {}: not written by the window; add --headless\n",
                            wanted);

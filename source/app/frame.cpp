@@ -179,6 +179,7 @@ void Frame::draw(const Scene& scene, std::vector<Ring> rings) {
     settings.ground = view.showGround;
     settings.diameter = scene.simulation.spacing * view.particleScale;
     settings.minimumPixels = scene.window.pointSize;
+    settings.surface = view.style == DrawStyle::Surface;
     settings.plain = view.colorBy == ColorBy::Plain;
     settings.map = view.colorMap;
     settings.rangeMin = r.min;

@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "render/egl_context.h"
 #include "render/gl.h"
+#include "scene/schema.h"
 
 #include <fmt/format.h>
 
@@ -13,6 +14,7 @@
 #include <chrono>
 #include <cstdio>
 #include <functional>
+#include <utility>
 #include <vector>
 
 namespace spindrift {
@@ -67,21 +69,25 @@ nlohmann::json benchFrameAndSwitch(const Scene& wanted) {
 
 int benchFrames() {
     fmt::print(
-        "| particles | samples | vertices, ms | draw, ms | read back, ms "
-        "|\n|---|---|---|---|---|\n");
+        "| particles | style | samples | vertices, ms | draw, ms | read back, ms |\n"
+        "|---|---|---|---|---|---|\n");
     EglContext context(-1);
     for (const char* spacing : {"0.02", "0.0143", "0.009"}) {
-        const Scene scene = chooseScene("dam_break", {{"bench", "simulation.spacing", spacing},
-                                                      {"bench", "compute.backend", "cpu"}});
+        Scene scene = chooseScene("dam_break", {{"bench", "simulation.spacing", spacing},
+                                                {"bench", "compute.backend", "cpu"}});
         const auto simulation = makeSimulation(scene);
         while (simulation->clock().time < 0.1) simulation->step();
-        for (int samples : {1, 4}) {
+        for (const auto& [style, samples] : {std::pair{DrawStyle::Spheres, 1},
+                                             {DrawStyle::Spheres, 4},
+                                             {DrawStyle::Surface, 1},
+                                             {DrawStyle::Surface, 4}}) {
+            scene.view.style = style;
             Frame frame(1280, 800, samples);
             const double vertices = medianMs(20, [&] { frame.update(*simulation, scene); });
             const double drawn = medianMs(20, [&] { frame.draw(scene), glFinish(); });
             const double read = medianMs(20, [&] { frame.image(); });
-            fmt::print("| {} | {} | {:.2f} | {:.1f} | {:.1f} |\n", simulation->fluidCount(),
-                       samples, vertices, drawn, read);
+            fmt::print("| {} | {} | {} | {:.2f} | {:.1f} | {:.1f} |\n", simulation->fluidCount(),
+                       enumNames(style)[size_t(style)], samples, vertices, drawn, read);
             std::fflush(stdout);
         }
     }

@@ -33,6 +33,8 @@ constexpr NamedOutput Outputs[] = {{"--csv ", &Output::csv},
                                    {"--hdf5 ", &Output::hdf5},
                                    {"--checkpoint ", &Output::checkpoint},
                                    {"--frames ", &Output::frames},
+                                   {"--video ", &Output::video},
+                                   {"--series ", &Output::series},
                                    {"--screenshot ", &Output::screenshot},
                                    {"--set output.particles=", &Output::particles}};
 

@@ -2,14 +2,17 @@
 #include "app/headless.h"
 
 #include "app/explain.h"
+#include "app/film.h"
 #include "app/frame.h"
 #include "app/progress.h"
 #include "app/recorder.h"
+#include "app/solid_shapes.h"
 #include "core/error.h"
 #include "core/output_file.h"
 #include "core/system.h"
 #include "measure/checkpoint.h"
 #include "measure/health.h"
+#include "measure/particle_series.h"
 #include "measure/poured.h"
 #include "measure/probes.h"
 #include "measure/save_particles.h"
@@ -37,10 +40,14 @@ struct OutputFormat {
     std::vector<std::string> extensions;
 };
 const std::vector<OutputFormat>& outputFormats() {
-    static const std::vector<OutputFormat> all = {
-        {&Output::screenshot, {"png"}},      {&Output::csv, {"csv"}},
-        {&Output::json, {"json"}},           {&Output::hdf5, {"h5", "hdf5", "hdf"}},
-        {&Output::particles, {"csv", "h5"}}, {&Output::checkpoint, {"h5", "hdf5", "hdf"}}};
+    static const std::vector<OutputFormat> all = {{&Output::screenshot, {"png"}},
+                                                  {&Output::csv, {"csv"}},
+                                                  {&Output::json, {"json"}},
+                                                  {&Output::hdf5, {"h5", "hdf5", "hdf"}},
+                                                  {&Output::particles, {"csv", "h5"}},
+                                                  {&Output::checkpoint, {"h5", "hdf5", "hdf"}},
+                                                  {&Output::video, {"mp4", "mkv", "webm"}},
+                                                  {&Output::series, {"pvd", "xdmf", "ply", "csv"}}};
     return all;
 }
 
@@ -49,6 +56,7 @@ const std::vector<OutputFormat>& outputFormats() {
 // again.
 void requireOutputs(const Output& output, const Start& start) {
     const std::string source = whereItLeads(start.file);
+    if (!output.series.empty()) MomentFormat{output.series};
     std::set<std::string> places;
     for (const OutputFormat& format : outputFormats()) {
         const std::string& file = output.*format.file;
@@ -76,12 +84,27 @@ struct Pictures {
     explicit Pictures(const Scene& scene)
         : context(scene.compute.device),
           frame(scene.window.width, scene.window.height, scene.window.samples) {}
-    void save(Simulation& simulation, const Scene& scene, const std::string& file) {
+    Image of(Simulation& simulation, const Scene& scene) {
         frame.update(simulation, scene);
         frame.draw(scene);
-        writePng(file, frame.image());
+        return frame.image();
+    }
+    void save(Simulation& simulation, const Scene& scene, const std::string& file) {
+        writePng(file, of(simulation, scene));
     }
 };
+
+std::vector<SolidSurface> surfacesOf(const Scene& scene) {
+    std::vector<SolidSurface> surfaces;
+    for (const Solid& solid : scene.solids) {
+        SolidSurface& surface = surfaces.emplace_back();
+        for (const SolidShape::Corner& c : shapeOf(scene, solid).corners)
+            surface.points.push_back(toDouble(c.position));
+        for (int32_t k = 0; k + 2 < int32_t(surface.points.size()); k += 3)
+            surface.triangles.push_back({k, k + 1, k + 2});
+    }
+    return surfaces;
+}
 
 // A knob's decimal number, which its float is but near to: a run of 0.1 s and a frame at 0.1 s end
 // together.
@@ -100,7 +123,7 @@ public:
         if (isInvalid()) throw Error(Failure::Invalid, refusal());
         requireOutputs(scene_.output, start);
         const Output& output = scene_.output;
-        if (!output.screenshot.empty() || !output.frames.empty()) {
+        if (!output.screenshot.empty() || !output.frames.empty() || !output.video.empty()) {
             pictures_.emplace(scene_);
             scene_ = onDrawingDevice(std::move(scene_));
         }
@@ -109,6 +132,11 @@ public:
             poured_ = pouredIntoMeshes(scene_, simulation_->particles());
         guard_.emplace(*simulation_, scene_);
         now_ = simulation_->measure();
+        if (!output.video.empty())
+            film_.emplace(output.video, scene_.window.width, scene_.window.height, filmRate());
+        if (!output.series.empty())
+            particles_.emplace(scene_, *simulation_, surfacesOf(scene_), now_,
+                               1 / double(output.fps));
         series_.emplace(output, probes_.columns(), simulation_->plan(),
                         start.state ? &now_ : nullptr);
         first_ = steps_ = now_.steps, evaluationsBefore_ = now_.evaluations;
@@ -133,6 +161,8 @@ public:
             progress_.clear();
             try {
                 series_->finish();
+                if (particles_) particles_->finish();
+                if (film_) film_->finish();
                 keepLastGood();
             } catch (const Error&) {}  // the first trouble is the one to tell
             throw;
@@ -254,6 +284,13 @@ private:
                      std::erase_if(frameTimes_, [&](double drawn) { return drawn > time; });
                  }});
         }
+        if (film_)
+            recorders_.push_back({frame, after(first_ > 0 ? now_.time : -1, frame),
+                                  [this] { addToFilm(); }, [](double) {}});
+        if (particles_)
+            recorders_.push_back({frame, after(particles_->lastTime(), frame),
+                                  [this] { particles_->add(*simulation_, now_.time); },
+                                  [this](double time) { particles_->dropAfter(time); }});
         const double checkpoint = asWritten(output.checkpointEvery);
         if (!output.checkpoint.empty() && checkpoint > 0)
             recorders_.push_back({checkpoint, after(now_.time, checkpoint),
@@ -269,6 +306,15 @@ private:
         pictures_->save(*simulation_, scene_, frameFile(frameTimes_.size()));
         frameTimes_.push_back(now_.time);
         ++framesMade_;
+    }
+    // s^-1, as it is shown; with more frames a second of simulated time it shows slow motion.
+    double filmRate() const { return std::min(60.0, double(scene_.output.fps)); }
+    // What is in a film can't be taken out: it shows trouble as it was, once, and goes on from
+    // there.
+    void addToFilm() {
+        if (now_.time <= filmed_) return;
+        film_->add(pictures_->of(*simulation_, scene_));
+        filmed_ = now_.time, ++filmFrames_;
     }
     // Those of the run that goes on, as far as they are there.
     void countFramesBefore(double every) {
@@ -321,6 +367,8 @@ private:
         judge();
         if (hasRows() && series_->lastTime() < now_.time) addRow();
         series_->finish();
+        if (particles_) particles_->finish();
+        if (film_) film_->finish();
         if (!output.checkpoint.empty() && trouble_.empty())
             writeCheckpointOf(simulation_->state());
         else
@@ -380,6 +428,12 @@ private:
                        std::filesystem::absolute(output.screenshot).lexically_normal().string());
         if (framesMade_ > 0)
             fmt::print(out, "frames         {} in {}\n", framesMade_, output.frames);
+        if (film_)
+            fmt::print(out, "film           {}, {} frames, {:.3g} s\n", output.video, filmFrames_,
+                       double(filmFrames_) / filmRate());
+        if (particles_)
+            fmt::print(out, "series         {}, {} moments\n", output.series,
+                       particles_->moments());
     }
 
     Scene scene_;
@@ -401,6 +455,10 @@ private:
     int64_t first_ = 0, steps_ = 0,
             endStep_ = 0;  // of the whole run: before this part of it, until now, at its end or 0
     int64_t made_ = 0;     // here, with those that were made in vain
+    std::optional<Film> film_;
+    std::optional<ParticleSeries> particles_;
+    double filmed_ = -1;  // s, of the film's last frame
+    size_t filmFrames_ = 0;
     std::vector<double> frameTimes_;  // s, of the frames written
     size_t framesMade_ = 0;           // here, with those that were drawn twice
     double written_ = -1;             // s simulated, of the checkpoint

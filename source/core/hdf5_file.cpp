@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <mutex>
 
 namespace spindrift::hdf5 {
 namespace {
@@ -30,6 +31,10 @@ void require(herr_t result, const std::string& what) {
 }
 
 bool writeFile(const std::string& path, const std::function<void(hid_t file)>& write) {
+    // The library of most systems can't be used by two threads at once, and series of particles
+    // are written beside the run.
+    static std::mutex oneAtATime;
+    const std::lock_guard lock(oneAtATime);
     prepareLibrary();
     try {
         Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "access");

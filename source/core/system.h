@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace spindrift::os {
 
@@ -70,11 +71,29 @@ public:
     bool resize(size_t size);
 
 private:
+    friend class ReadingProgram;
     static constexpr intptr_t None = -1;
     explicit OutFile(intptr_t handle) : handle_(handle) {}
     void close();
     intptr_t handle_ = None;
 };
+// A program of PATH that reads what this one writes to it.
+class ReadingProgram {
+public:
+    ReadingProgram() = default;
+    ~ReadingProgram() { finish(); }
+    ReadingProgram(const ReadingProgram&) = delete;
+    // False where it can't be started; errno says why. Signals from the terminal don't reach it.
+    bool start(const std::vector<std::string>& command);
+    bool write(const char* data, size_t size) { return input_.write(data, size); }
+    // Nothing more comes: waits for its end and returns its exit code, -1 when it has none.
+    int finish();
+
+private:
+    OutFile input_;
+    int id_ = 0;  // of the process, 0: none
+};
+
 // Until a file has reached the disk, so that a rename can't come before; it gets the owner and the
 // rights of the one that it is to replace.
 bool finish(const std::string& path, const FileStatus& replaced);

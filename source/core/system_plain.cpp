@@ -83,6 +83,9 @@ void OutFile::close() {
     handle_ = None;
 }
 
+bool ReadingProgram::start(const std::vector<std::string>&) { return errno = ENOSYS, false; }
+int ReadingProgram::finish() { return -1; }
+
 bool finish(const std::string&, const FileStatus&) { return true; }
 bool moveOver(const std::string& from, const fs::path& to) {
     std::error_code failed;

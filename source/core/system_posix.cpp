@@ -1,10 +1,12 @@
 #include "core/system.h"
 
 #include <fcntl.h>
+#include <spawn.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -164,6 +166,38 @@ bool OutFile::resize(size_t size) { return ftruncate(int(handle_), off_t(size)) 
 void OutFile::close() {
     if (handle_ != None) ::close(int(handle_));
     handle_ = None;
+}
+
+bool ReadingProgram::start(const std::vector<std::string>& command) {
+    std::vector<char*> arguments;
+    for (const std::string& a : command) arguments.push_back(const_cast<char*>(a.c_str()));
+    arguments.push_back(nullptr);
+    int ends[2];
+    if (pipe2(ends, O_CLOEXEC) != 0) return false;
+    posix_spawn_file_actions_t files;
+    posix_spawn_file_actions_init(&files);
+    posix_spawn_file_actions_adddup2(&files, ends[0], STDIN_FILENO);
+    posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawnattr_t how;
+    posix_spawnattr_init(&how);
+    posix_spawnattr_setflags(&how, POSIX_SPAWN_SETPGROUP);
+    pid_t id = 0;
+    const int failed = posix_spawnp(&id, arguments[0], &files, &how, arguments.data(), environ);
+    posix_spawnattr_destroy(&how);
+    posix_spawn_file_actions_destroy(&files);
+    close(ends[0]);
+    input_ = OutFile(ends[1]);
+    if (failed) input_ = OutFile(), errno = failed;
+    id_ = failed ? 0 : id;
+    return !failed;
+}
+int ReadingProgram::finish() {
+    input_ = OutFile();
+    if (id_ == 0) return -1;
+    int status = -1;
+    const int ended = again([&] { return waitpid(id_, &status, 0); });
+    id_ = 0;
+    return ended > 0 && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
 bool finish(const std::string& path, const FileStatus& replaced) {

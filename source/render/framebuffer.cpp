@@ -62,6 +62,13 @@ void Framebuffer::resolve() const {
                                GL_COLOR_BUFFER_BIT, GL_NEAREST);
 }
 
+GLuint Framebuffer::resolvedDepth() const {
+    if (samples_ > 1)
+        glBlitNamedFramebuffer(drawing_, resolved_, 0, 0, width_, height_, 0, 0, width_, height_,
+                               GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+    return depth_;
+}
+
 float Framebuffer::depth(int x, int y) const {
     if (x < 0 || y < 0 || x >= width_ || y >= height_) return 1;
     const int row = height_ - 1 - y;

@@ -19,6 +19,8 @@ public:
     GLuint depthTexture() const { return samples_ > 1 ? drawingDepth_ : depth_; }
     // Averages the samples; afterwards resolved() holds the picture.
     void resolve() const;
+    // The same, with one sample's depths: the texture of resolved().
+    GLuint resolvedDepth() const;
     // Depth of a pixel counted from the upper left corner, 1 where nothing was drawn.
     float depth(int x, int y) const;
 

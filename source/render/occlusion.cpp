@@ -24,7 +24,7 @@ void Occlusion::resize(const Framebuffer& target) {
               height = (target.height() + tileSize - 1) / tileSize, samples = target.samples();
     if (width == width_ && height == height_ && samples == samples_) return;
     if (samples != samples_)
-        program_ = loadProgram("tiles", "#define SAMPLES " + std::to_string(samples) + "\n");
+        program_ = loadFilter("tiles", "#define SAMPLES " + std::to_string(samples) + "\n");
     width_ = width, height_ = height, samples_ = samples;
     now_ = makeTiles(width, height);
     before_ = makeTiles(width, height);

@@ -60,7 +60,9 @@ float gridStep(Vec3 size) {
 
 float lineWidth(int height) { return std::clamp(float(height) / 700, 1.0f, 5.0f); }
 
-void addBox(std::vector<Segment>& lines, Vec3 size, float width, Four color) {
+// `lift`: m, by which lines are nearer to the eye than they are.
+void addBox(std::vector<Segment>& lines, Vec3 size, float width, Four color, Vec3 eye, float lift) {
+    const auto lifted = [&](Vec3 at) { return at + (lift / length(eye - at)) * (eye - at); };
     for (int axis = 0; axis < 3; ++axis)
         for (int corner = 0; corner < 4; ++corner) {
             Vec3 from;
@@ -68,7 +70,7 @@ void addBox(std::vector<Segment>& lines, Vec3 size, float width, Four color) {
             from[(axis + 2) % 3] = corner & 2 ? size[(axis + 2) % 3] : 0;
             Vec3 to = from;
             to[axis] = size[axis];
-            lines.push_back({pack(from, width), pack(to), color});
+            lines.push_back({pack(lifted(from), width), pack(lifted(to)), color});
         }
 }
 
@@ -137,6 +139,7 @@ void Renderer::draw(const VertexBuffer& vertices, const DrawSettings& settings) 
     drawBackground(settings);
     if (!settings.solids.empty()) solids_.draw(settings.solids);
     drawParticles(vertices, settings);
+    if (settings.surface) drawFluidSurface(settings);
     drawLines(settings);
     target_.resolve();
     glBindFramebuffer(GL_FRAMEBUFFER, target_.resolved());
@@ -202,13 +205,14 @@ void Renderer::drawBackground(const DrawSettings&) {
 void Renderer::drawParticles(const VertexBuffer& vertices, const DrawSettings& s) {
     occlusion_.resize(target_);
     glVertexArrayVertexBuffer(vertices_, 0, vertices.name(), 0, sizeof(Vertex));
-    drawSpheres(s.fluidCount + s.wallCount, false);
+    const int first = s.surface ? s.fluidCount : 0, count = s.fluidCount + s.wallCount - first;
+    drawSpheres(first, count, false);
     occlusion_.look(target_);
-    drawSpheres(s.fluidCount + s.wallCount, true);
+    drawSpheres(first, count, true);
     occlusion_.endPicture();
 }
 
-void Renderer::drawSpheres(int count, bool second) {
+void Renderer::drawSpheres(int first, int count, bool second) {
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LESS);
     glEnable(GL_PROGRAM_POINT_SIZE);
@@ -219,14 +223,22 @@ void Renderer::drawSpheres(int count, bool second) {
     occlusion_.bind();
     glUniform1i(0, second);
     glBindVertexArray(vertices_);
-    glDrawArrays(GL_POINTS, 0, count);
+    glDrawArrays(GL_POINTS, first, count);
     glDisable(GL_SAMPLE_ALPHA_TO_COVERAGE);
+}
+
+void Renderer::drawFluidSurface(const DrawSettings& s) {
+    if (!surface_) surface_.emplace();
+    surface_->draw(target_, vertices_, s.fluidCount, tables_);
 }
 
 void Renderer::drawLines(const DrawSettings& s) {
     std::vector<Segment> lines;
     const float width = lineWidth(height());
-    if (s.outline) addBox(lines, s.domainSize, width, {0.62f, 0.70f, 0.82f, 0.5f});
+    // The fluid's surface reaches a little beyond walls.
+    if (s.outline)
+        addBox(lines, s.domainSize, width, {0.62f, 0.70f, 0.82f, 0.5f}, s.camera.eye(),
+               s.surface ? s.diameter : 0);
     for (size_t i = 0; i < s.solids.size(); ++i)
         for (const auto& [from, to] : solids_.shapes()[i].edges) {
             // A little nearer to the eye than the faces that meet there.

@@ -4,6 +4,7 @@
 #include "core/color_map.h"
 #include "core/vec.h"
 #include "render/camera.h"
+#include "render/fluid_surface.h"
 #include "render/framebuffer.h"
 #include "render/image.h"
 #include "render/legend.h"
@@ -32,6 +33,7 @@ struct DrawSettings {
     bool outline = true, ground = true;
     float diameter = 0.02f;
     float minimumPixels = 0;  // particles are never drawn smaller than this
+    bool surface = false;     // of the fluid instead of its particles
     bool plain = false;       // one colour instead of the table
     ColorMap map = ColorMap::Viridis;
     std::vector<Swatch>
@@ -65,7 +67,8 @@ private:
     void uploadFrame(const DrawSettings&);
     void drawBackground(const DrawSettings&);
     void drawParticles(const VertexBuffer&, const DrawSettings&);
-    void drawSpheres(int count, bool second);
+    void drawSpheres(int first, int count, bool second);
+    void drawFluidSurface(const DrawSettings&);
     void drawLines(const DrawSettings&);
     void uploadSwatches(const DrawSettings&);
 
@@ -78,7 +81,8 @@ private:
     GlTexture tables_;
     Overlay overlay_;
     SolidTriangles solids_;
-    OrbitCamera camera_;  // of the last picture
+    std::optional<FluidSurface> surface_;  // once it is asked for
+    OrbitCamera camera_;                   // of the last picture
 };
 
 }  // namespace spindrift

@@ -56,11 +56,9 @@ GlShader compile(GLenum stage, const std::string& path, const std::string& defin
     throw Error(Failure::NoDisplay, path + ": shader doesn't compile: " + firstWords(log.data()));
 }
 
-}  // namespace
-
-GlProgram loadProgram(const std::string& name, const std::string& defines) {
+GlProgram link(const std::string& vertices, const std::string& name, const std::string& defines) {
     GlProgram program(glCreateProgram());
-    const GlShader vertex = compile(GL_VERTEX_SHADER, pathOf(name + ".vert"), defines);
+    const GlShader vertex = compile(GL_VERTEX_SHADER, pathOf(vertices + ".vert"), defines);
     const GlShader fragment = compile(GL_FRAGMENT_SHADER, pathOf(name + ".frag"), defines);
     glAttachShader(program, vertex);
     glAttachShader(program, fragment);
@@ -72,6 +70,15 @@ GlProgram loadProgram(const std::string& name, const std::string& defines) {
     glGetProgramInfoLog(program, GLsizei(log.size()), nullptr, log.data());
     throw Error(Failure::NoDisplay,
                 pathOf(name) + ": shaders don't link: " + firstWords(log.data()));
+}
+
+}  // namespace
+
+GlProgram loadProgram(const std::string& name, const std::string& defines) {
+    return link(name, name, defines);
+}
+GlProgram loadFilter(const std::string& name, const std::string& defines) {
+    return link("whole", name, defines);
 }
 
 }  // namespace spindrift

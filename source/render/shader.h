@@ -10,5 +10,7 @@ namespace spindrift {
 // Throws Error (NoDisplay) with the file's name and the compiler's words.
 // `defines`: lines that stand before everything.
 GlProgram loadProgram(const std::string& name, const std::string& defines = "");
+// The same with whole.vert: NAME.frag for every pixel of what is drawn into, by three vertices.
+GlProgram loadFilter(const std::string& name, const std::string& defines = "");
 
 }  // namespace spindrift

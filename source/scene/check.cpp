@@ -9,6 +9,7 @@
 #include "scene/formulation.h"
 #include "scene/json.h"
 #include "scene/motion.h"
+#include "scene/output_fields.h"
 #include "scene/particle_file.h"
 #include "scene/lattice.h"
 #include "scene/memory.h"
@@ -395,6 +396,7 @@ void checkOutput(const Output& output) {
         refuse(
             "output.particles",
             fmt::format("\"{}\" is of no known kind; name a file that ends in .csv or .h5", file));
+    fieldsOf(output.fields);
 }
 
 // Where something reads must be in the domain; in two dimensions z does not matter, and a gauge's

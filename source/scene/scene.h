@@ -24,6 +24,7 @@ enum class Shape { Block, Sphere, Cylinder, Wedge, Plane, Mesh, File };
 enum class Axis { X, Y, Z };
 enum class Up { Auto, X, Y, Z, MinusX, MinusY, MinusZ };
 enum class ColorBy { Plain, Velocity, Pressure, Density, Acceleration, Id, Fluid, Surface };
+enum class DrawStyle { Spheres, Surface };
 enum class Field { Uniform, TaylorGreen, Stretching, Rotation, Shear, SoundWave, StandingWave };
 enum class StartPlaces { Lattice, Relaxed };
 enum class StartPressure { None, Hydrostatic };
@@ -259,6 +260,7 @@ struct Stirrer {
 };
 
 struct View {
+    DrawStyle style = DrawStyle::Spheres;
     ColorBy colorBy = ColorBy::Velocity;
     ColorMap colorMap = ColorMap::Coolwarm;
     RangeMode range = RangeMode::Run;
@@ -301,6 +303,9 @@ struct Output {
         0;  // s of simulated time between rows of the series, 0 = with the frames, by fps
     std::string
         particles;  // CSV or HDF5 path: the last state, which a body of shape file can begin with
+    std::string series;  // path: particles, solids and objects at every frame
+    std::string fields = "velocity,density,pressure";  // of the particles in there
+    std::string video;                                 // path: a film of the run
     bool strict = false;  // what is outside the validity of the method is an error
     std::vector<Probe> probes;
 };

@@ -47,6 +47,7 @@ constexpr auto enumNames(ColorBy) {
     return std::array{"plain",        "velocity", "pressure", "density",
                       "acceleration", "id",       "fluid",    "surface"};
 }
+constexpr auto enumNames(DrawStyle) { return std::array{"spheres", "surface"}; }
 constexpr auto enumNames(ColorMap) { return std::array{"viridis", "cividis", "turbo", "coolwarm"}; }
 constexpr auto enumNames(Field) {
     return std::array{"uniform", "taylor_green", "stretching",   "rotation",
@@ -560,6 +561,10 @@ template <class S, class Visitor> void visitFluid(S& s, Visitor&& visit) {
 
 template <class S, class Visitor> void visitPicture(S& s, Visitor&& visit) {
     auto& v = s.view;
+    visit("view.style", v.style,
+          Knob{"", 0, 0,
+               "fluid as its particles, or as a surface with light behind it; of one colour where "
+               "color_by is plain"});
     visit("view.color_by", v.colorBy, Knob{"", 0, 0, "what colours the particles"});
     visit("view.color_map", v.colorMap, Knob{"", 0, 0, "table of colours"});
     visit("view.range", v.range,
@@ -634,6 +639,21 @@ template <class S, class Visitor> void visitOutput(S& s, Visitor&& visit) {
           Knob{"s", 0, 1e6f,
                "simulated time between rows of the series, for impacts shorter than a frame; 0 = "
                "with the frames, by output.fps",
+               Restart});
+    visit("output.series", o.series,
+          Knob{"", 0, 0,
+               "particles and solids at every frame, by output.fps: .pvd (VTK, ParaView), .xdmf "
+               "(HDF5), .ply or .csv; files are in a folder of that name",
+               Restart});
+    visit("output.fields", o.fields,
+          Knob{"", 0, 0,
+               "of particles in output.series: velocity, acceleration, density, pressure, mass, "
+               "fluid",
+               Restart});
+    visit("output.video", o.video,
+          Knob{"", 0, 0,
+               "film of the run, .mp4, .mkv or .webm, made by ffmpeg; output.fps frames a second "
+               "of simulated time, shown 60 a second at most",
                Restart});
     visit("output.strict", o.strict,
           Knob{"", 0, 0, "results outside the validity of the method are an error, not a remark",

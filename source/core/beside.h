@@ -1,0 +1,36 @@
+#pragma once
+// Work that a run does not wait for: files that are written, pictures that are encoded.
+#include <condition_variable>
+#include <cstddef>
+#include <deque>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <thread>
+
+namespace spindrift {
+
+// Does one thing after the other on a thread of its own. A caller waits when too many are undone,
+// and gets what a thing has thrown at its next call.
+class Beside {
+public:
+    Beside() : thread_([this] { work(); }) {}
+    ~Beside();
+    void add(std::function<void()> thing);
+    // Until all is done.
+    void wait();
+
+private:
+    static constexpr size_t Most = 8;
+    void work();
+    void tellTrouble();
+
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::deque<std::function<void()>> undone_;
+    std::exception_ptr trouble_;
+    bool busy_ = false, ends_ = false;
+    std::thread thread_;  // last: the rest is there when it begins
+};
+
+}  // namespace spindrift

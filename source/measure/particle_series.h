@@ -1,0 +1,61 @@
+#pragma once
+// Particles, solids and objects of a run at every frame, in files that other programs read,
+// written beside the run.
+#include "core/beside.h"
+#include "measure/moment_files.h"
+#include "sim/simulation.h"
+
+#include <string>
+#include <vector>
+
+namespace spindrift {
+
+// Triangles of a solid around its middle, in its own axes, m.
+struct SolidSurface {
+    std::vector<Vec3d> points;
+    std::vector<std::array<int32_t, 3>> triangles;
+};
+
+// output.series: for a path run.pvd the index run.pvd and beside it run/fluid_00000.vtp,
+// run/solids_00000.vtp and run/objects_00000.vtp, as moment_files.h has them. Solids that stay are
+// written once. A run that goes on adds to what is there.
+class ParticleSeries {
+public:
+    // `surfaces`: of the scene's solids, in their order; they may be empty. Throws Error (Output)
+    // where nothing can be written, or fields are asked for that there aren't.
+    ParticleSeries(const Scene&, Simulation&, std::vector<SolidSurface> surfaces,
+                   const Measurement& now, double interval);
+    void add(Simulation&, double time);
+    // The run has gone back to this time, s.
+    void dropAfter(double time);
+    void finish() { beside_.wait(); }
+    // Of those that are written, with those that were there; s, of the last, -1: there is none.
+    size_t moments() const { return times_.size(); }
+    double lastTime() const { return times_.empty() ? -1 : times_.back(); }
+
+private:
+    bool hasSolids() const { return !surfaces_.empty() && format_.takesTriangles(); }
+    std::string fileOf(const std::string& piece, size_t number) const;
+    Piece fluidOf(const std::vector<Particle>&) const;
+    Piece solidsAt(const std::vector<SolidPose>&) const;
+    Piece objectsOf(const RunState&) const;
+    void note(double time, const Piece&, size_t number);
+    void put(double time, Piece, size_t number);
+    void writeIndex();
+
+    std::string path_, folder_;
+    MomentFormat format_;
+    Vec3d corner_;  // of the domain, world coordinates
+    std::vector<std::string> fields_;
+    std::vector<float> masses_;     // kg, by id; in two dimensions kg/m
+    std::vector<int32_t> fluids_;   // entries of fluid.bodies, by id; empty: one for all
+    std::vector<int32_t> objects_;  // of each object's particle, in their order
+    std::vector<SolidSurface> surfaces_;
+    std::vector<SolidPose> posed_;  // as last written
+    size_t posedNumber_ = 0;
+    std::vector<double> times_;  // s
+    std::vector<MomentFile> files_;
+    Beside beside_;
+};
+
+}  // namespace spindrift
