@@ -74,10 +74,9 @@ template <class T> py::array viewOf(const py::object& self, T Particle::*member,
     const T* first = p.empty() ? nullptr : &(p.data()->*member);
     const auto n = py::ssize_t(p.size()), step = py::ssize_t(sizeof(Particle));
     using Number = std::conditional_t<std::is_same_v<T, Vec3d>, double, T>;
-    py::array view = width == 1
-                         ? py::array(py::dtype::of<Number>(), {n}, {step}, first, self)
-                         : py::array(py::dtype::of<Number>(), {n, py::ssize_t(width)},
-                                     {step, py::ssize_t(sizeof(Number))}, first, self);
+    py::array view = width == 1 ? py::array(py::dtype::of<Number>(), {n}, {step}, first, self)
+                                : py::array(py::dtype::of<Number>(), {n, py::ssize_t(width)},
+                                            {step, py::ssize_t(sizeof(Number))}, first, self);
     view.attr("flags").attr("writeable") = false;
     return view;
 }
@@ -114,7 +113,8 @@ public:
             throw Error(Failure::Usage, "run: every must be above 0 s when each is given");
         const double begin = this->time();
         for (int64_t calls = 1; !reached(time);) {
-            const double next = each.is_none() ? time : std::min(time, begin + double(calls) * every);
+            const double next =
+                each.is_none() ? time : std::min(time, begin + double(calls) * every);
             simulation_->stopAt(next);
             for (int k = 0; k < Looks && !reached(next); ++k) advance(1);
             look();
@@ -195,8 +195,8 @@ public:
 
     void hold(const std::string& solid, const std::vector<float>& target) {
         const std::vector<SolidMeasurement> all = simulation_->measure().solids;
-        const auto found = std::find_if(all.begin(), all.end(),
-                                        [&](const auto& s) { return s.name == solid; });
+        const auto found =
+            std::find_if(all.begin(), all.end(), [&](const auto& s) { return s.name == solid; });
         if (found == all.end())
             throw Error(Failure::Usage, "hold: there is no solid \"" + solid + "\"");
         simulation_->hold({int(found - all.begin()), vectorOf(target, "hold")});
@@ -256,8 +256,7 @@ private:
         tellRemarks();
     }
     void tellRemarks() {
-        for (; told_ < validity_->remarks().size(); ++told_)
-            warn(validity_->remarks()[told_].text);
+        for (; told_ < validity_->remarks().size(); ++told_) warn(validity_->remarks()[told_].text);
     }
     static void warn(const std::string& text) {
         if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();

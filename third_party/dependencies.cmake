@@ -8,6 +8,9 @@ find_package(PNG REQUIRED)
 find_package(assimp REQUIRED)
 find_package(glm REQUIRED)
 find_package(GLEW REQUIRED)
+find_library(OPENVDB openvdb)  # its own CMake module asks for packages that are not needed
+find_library(TBB tbb)
+find_library(IMATH NAMES Imath Imath-3_1)
 set(OpenGL_GL_PREFERENCE GLVND)
 find_package(OpenGL REQUIRED COMPONENTS OpenGL EGL)
 

@@ -12,6 +12,7 @@
 #include "app/headless.h"
 #include "app/scene_choice.h"
 #include "app/stress.h"
+#include "app/surface.h"
 #include "app/validate.h"
 #include "core/error.h"
 #include "core/output_file.h"
@@ -346,6 +347,26 @@ CLI::App* addValidate(CLI::App& app, ValidateOptions& options) {
     return command;
 }
 
+CLI::App* addSurface(CLI::App& app, SurfaceOptions& options) {
+    CLI::App* command = app.add_subcommand(
+        "surface", "the surface around the particles of files, of any program, as triangles");
+    command->add_option("files", options.files, "CSV or HDF5 tables with x, y and z in m")
+        ->required();
+    command
+        ->add_option("--out", options.out,
+                     "the surface's file, or a folder; beside the table without it")
+        ->type_name("PATH");
+    command->add_option("--format", options.format, "ply, obj or vdb; ply without it")
+        ->type_name("NAME");
+    command->add_option("--spacing", options.spacing, "of the particles, m; found without it")
+        ->check(CLI::PositiveNumber);
+    command->add_option("--cell", options.cell, "of the grid, in spacings; 0.5 without it")
+        ->check(CLI::Range(0.1, 2.0));
+    command->add_option("--smooth", options.smoothings, "how often it is smoothed; 3 without it")
+        ->check(CLI::Range(0, 100));
+    return command;
+}
+
 // Everything that isn't the name of a command or a general option belongs to `run`.
 std::vector<std::string> withCommand(int argc, const char* const* argv, const CLI::App& app) {
     std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
@@ -375,6 +396,8 @@ int runCommandLine(int argc, const char* const* argv) {
     const CLI::App* benchCommand = addBench(app, benchmark);
     ValidateOptions validation;
     const CLI::App* validateCommand = addValidate(app, validation);
+    SurfaceOptions surfaces;
+    const CLI::App* surfaceCommand = addSurface(app, surfaces);
     StressOptions stressOptions;
     const CLI::App* stressCommand = addStress(app, stressOptions);
     CLI::App* schemaCommand = app.add_subcommand("schema", "writes the JSON Schema of scene files");
@@ -396,6 +419,7 @@ int runCommandLine(int argc, const char* const* argv) {
     if (*benchCommand) return runBench(benchmark);
     if (*stressCommand) return stress(stressOptions);
     if (*validateCommand) return validate(validation);
+    if (*surfaceCommand) return makeSurfaces(surfaces);
     if (*schemaCommand) writeText("-", asMarkdown ? knobReference() : jsonSchema());
     return int(Exit::Ok);
 }

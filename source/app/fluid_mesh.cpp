@@ -1,0 +1,116 @@
+#include "app/fluid_mesh.h"
+
+#include <openvdb/openvdb.h>
+#include <openvdb/points/PointConversion.h>
+#include <openvdb/points/PointRasterizeSDF.h>
+#include <openvdb/tools/Filter.h>
+#include <openvdb/tools/VolumeToMesh.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace spindrift {
+
+struct FluidLevelSet::Grid {
+    openvdb::FloatGrid::Ptr distances;
+};
+
+namespace {
+
+// Three numbers a point, as OpenVDB reads them.
+std::vector<openvdb::Vec3d> pointsOf(const std::vector<Vec3d>& places) {
+    std::vector<openvdb::Vec3d> points;
+    points.reserve(places.size());
+    for (const Vec3d& p : places) points.emplace_back(p.x, p.y, p.z);
+    return points;
+}
+
+double volumeOf(const FluidMesh& mesh) {
+    double six = 0;
+    const Vec3d middle = mesh.points.empty() ? Vec3d{} : mesh.points[0];
+    for (const auto& t : mesh.triangles) {
+        const Vec3d a = mesh.points[size_t(t[0])] - middle, b = mesh.points[size_t(t[1])] - middle,
+                    c = mesh.points[size_t(t[2])] - middle;
+        six += dot(a, cross(b, c));
+    }
+    return six / 6;
+}
+
+double areaOf(const FluidMesh& mesh) {
+    double two = 0;
+    for (const auto& t : mesh.triangles) {
+        const Vec3d a = mesh.points[size_t(t[0])];
+        two += length(cross(mesh.points[size_t(t[1])] - a, mesh.points[size_t(t[2])] - a));
+    }
+    return two / 2;
+}
+
+FluidMesh meshAt(const openvdb::FloatGrid& distances, double shift) {
+    std::vector<openvdb::Vec3s> points;
+    std::vector<openvdb::Vec3I> triangles;
+    std::vector<openvdb::Vec4I> quads;
+    openvdb::tools::volumeToMesh(distances, points, triangles, quads, shift);
+    FluidMesh mesh;
+    for (const openvdb::Vec3s& p : points) mesh.points.push_back({p.x(), p.y(), p.z()});
+    // OpenVDB winds them with the clock.
+    for (const openvdb::Vec3I& t : triangles)
+        mesh.triangles.push_back({int32_t(t[0]), int32_t(t[2]), int32_t(t[1])});
+    for (const openvdb::Vec4I& q : quads) {
+        mesh.triangles.push_back({int32_t(q[0]), int32_t(q[2]), int32_t(q[1])});
+        mesh.triangles.push_back({int32_t(q[0]), int32_t(q[3]), int32_t(q[2])});
+    }
+    mesh.volume = volumeOf(mesh);
+    return mesh;
+}
+
+}  // namespace
+
+FluidLevelSet::FluidLevelSet(const std::vector<Vec3d>& particles, double spacing, double cell,
+                             int smoothings)
+    : grid_(std::make_unique<Grid>()), spacing_(spacing) {
+    openvdb::initialize();
+    // Some eight particles a cell of their grid, as OpenVDB likes it.
+    const auto points = openvdb::points::createPointDataGrid<openvdb::points::NullCodec,
+                                                             openvdb::points::PointDataGrid>(
+        pointsOf(particles), *openvdb::math::Transform::createLinearTransform(2 * spacing));
+    const double radius = 0.8 * spacing, search = 2.2 * spacing, band = 3;  // band in cells
+    grid_->distances = openvdb::points::rasterizeSmoothSpheres(
+        *points, radius, search, band,
+        openvdb::math::Transform::createLinearTransform(cell * spacing));
+    openvdb::tools::Filter<openvdb::FloatGrid> filter(*grid_->distances);
+    if (smoothings > 0) filter.mean(1, smoothings);
+}
+FluidLevelSet::~FluidLevelSet() = default;
+
+// The secant method; at first a shift changes the volume by the area.
+FluidMesh FluidLevelSet::mesh(double volume, double& shift) const {
+    const double most = 0.45 * spacing_;
+    shift = 0;
+    FluidMesh mesh = meshAt(*grid_->distances, shift);
+    double slope = areaOf(mesh);
+    for (int k = 0; k < 6 && std::abs(mesh.volume - volume) > 1e-3 * volume && slope > 0; ++k) {
+        const double next = std::clamp(shift + (volume - mesh.volume) / slope, -most, most);
+        if (next == shift) break;
+        const double before = mesh.volume;
+        mesh = meshAt(*grid_->distances, next);
+        slope = (mesh.volume - before) / (next - shift);
+        shift = next;
+    }
+    return mesh;
+}
+
+bool FluidLevelSet::writeVdb(const std::string& path, double shift) const {
+    const openvdb::FloatGrid::Ptr shifted = grid_->distances->deepCopy();
+    for (auto value = shifted->beginValueOn(); value; ++value)
+        value.setValue(*value - float(shift));
+    shifted->setName("surface");
+    shifted->setGridClass(openvdb::GRID_LEVEL_SET);
+    try {
+        openvdb::io::File file(path);
+        file.write({shifted});
+        file.close();
+    } catch (const openvdb::Exception&) { return false; }
+    return true;
+}
+
+}  // namespace spindrift

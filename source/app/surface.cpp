@@ -1,0 +1,126 @@
+#include "app/surface.h"
+
+#include "app/exit_code.h"
+#include "app/fluid_mesh.h"
+#include "core/error.h"
+#include "core/output_file.h"
+#include "measure/moment_files.h"
+#include "scene/particle_file.h"
+#include "scene/particle_spacing.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+namespace spindrift {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::vector<std::string> Formats = {"ply", "obj", "vdb"};
+
+bool writeObj(const std::string& path, const FluidMesh& mesh) {
+    std::string text = "# written by Spindrift, m\n";
+    const auto out = std::back_inserter(text);
+    for (const Vec3d& p : mesh.points) fmt::format_to(out, "v {} {} {}\n", p.x, p.y, p.z);
+    for (const auto& t : mesh.triangles)
+        fmt::format_to(out, "f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
+    std::ofstream file(path, std::ios::binary);
+    file << text;
+    return bool(file.flush());
+}
+
+// ply, obj or vdb.
+std::string formatOf(const SurfaceOptions& options) {
+    std::string format = options.format;
+    if (format.empty() && options.files.size() == 1)
+        format = fs::path(options.out).extension().string();
+    if (!format.empty() && format[0] == '.') format.erase(0, 1);
+    if (format.empty()) return "ply";
+    if (std::find(Formats.begin(), Formats.end(), format) == Formats.end())
+        throw Error(Failure::Usage,
+                    fmt::format("surface: \"{}\" is no format; take ply, obj or vdb", format));
+    return format;
+}
+
+// Where the surface of each table goes: one file, or into a folder under the table's name.
+std::vector<std::string> targetsOf(const SurfaceOptions& options, const std::string& format) {
+    if (options.files.size() == 1 && !options.out.empty() && !fs::is_directory(options.out))
+        return {options.out};
+    if (!options.out.empty()) requireFolder(options.out);
+    std::vector<std::string> targets;
+    std::set<std::string> taken;
+    for (const std::string& file : options.files) {
+        fs::path target = fs::path(file).replace_extension(format);
+        if (!options.out.empty()) target = options.out / target.filename();
+        if (!taken.insert(target.string()).second)
+            throw Error(Failure::Usage,
+                        fmt::format("surface: two files would become {}; give each a name of its "
+                                    "own",
+                                    target.string()));
+        targets.push_back(target.string());
+    }
+    return targets;
+}
+
+double spacingOf(const std::string& file, const std::vector<Vec3d>& places, double asked) {
+    const double spacing = asked > 0 ? asked : spacingBetween(places, 3);
+    if (!(spacing > 0))
+        throw Error(Failure::Usage,
+                    file + ": its particles don't say how far they are apart; give --spacing");
+    return spacing;
+}
+
+// m^3, by the masses and densities that the table has, else by the spacing.
+double volumeOf(const ParticleTable& table, double spacing) {
+    double volume = 0;
+    for (size_t i = 0; i < table.positions.size(); ++i) {
+        const bool weighed = !table.masses.empty() && !table.densities.empty();
+        volume += weighed && table.densities[i] > 0 ? table.masses[i] / table.densities[i]
+                                                    : spacing * spacing * spacing;
+    }
+    return volume;
+}
+
+void makeSurface(const std::string& file, const std::string& target, const std::string& format,
+                 const SurfaceOptions& options) {
+    const auto begin = std::chrono::steady_clock::now();
+    const ParticleTable table = readParticles(file);
+    const double spacing = spacingOf(file, table.positions, options.spacing),
+                 volume = volumeOf(table, spacing);
+    const FluidLevelSet distances(table.positions, spacing, options.cell, options.smoothings);
+    double shift = 0;
+    FluidMesh mesh = distances.mesh(volume, shift);
+    const size_t triangles = mesh.triangles.size();
+    const double enclosed = mesh.volume;
+    if (format == "ply") {
+        const Piece piece{"surface", std::move(mesh.points), {}, std::move(mesh.triangles)};
+        MomentFormat(target).write(target, piece);
+    } else {
+        replaceFile(target, [&](const std::string& temporary) {
+            return format == "obj" ? writeObj(temporary, mesh)
+                                   : distances.writeVdb(temporary, shift);
+        });
+    }
+    const double seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    fmt::print("{}: {} particles, {} triangles, {:.4g} m^3 of {:.4g}, {:.2g} s\n", target,
+               table.positions.size(), triangles, enclosed, volume, seconds);
+}
+
+}  // namespace
+
+int makeSurfaces(const SurfaceOptions& options) {
+    const std::string format = formatOf(options);
+    const std::vector<std::string> targets = targetsOf(options, format);
+    for (const std::string& target : targets) requireWritable(target);
+    for (size_t k = 0; k < targets.size(); ++k)
+        makeSurface(options.files[k], targets[k], format, options);
+    return int(Exit::Ok);
+}
+
+}  // namespace spindrift
