@@ -26,8 +26,8 @@ public:
     // averaged with their neighbours. Throws Error (Usage) where this build has no OpenVDB.
     FluidLevelSet(const std::vector<Vec3d>& particles, double spacing, double cell, int smoothings);
     ~FluidLevelSet();
-    // Closed, and of this volume, m^3, as far as a shift of less than half a spacing reaches. `shift`
-    // becomes what was needed, m.
+    // Closed, and of this volume, m^3, as far as a shift of less than half a spacing reaches.
+    // `shift` becomes what was needed, m.
     FluidMesh mesh(double volume, double& shift) const;
     // The distances less `shift`, as a grid "surface" of an OpenVDB file. Returns whether all of it
     // was written.

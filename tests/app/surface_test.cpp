@@ -95,7 +95,8 @@ TEST_F(Surfaces, OfABallIsRoundClosedAndOfItsVolume) {
 TEST_F(Surfaces, AreFlatWhereFluidIsAndKeepSheets) {
     lattice("pool.csv", [](double, double y, double) { return y < 0.3; });
     lattice("sheet.csv", [](double, double y, double) { return y > 0.4 && y < 0.4 + dx; });
-    const Outcome outcome = call("surface pool.csv sheet.csv --format obj --out meshes --spacing 0.02");
+    const Outcome outcome =
+        call("surface pool.csv sheet.csv --format obj --out meshes --spacing 0.02");
     ASSERT_EQ(outcome.code, 0) << outcome.text;
     for (const auto& [name, low, volume] :
          {std::tuple{"pool.obj", 0.3, 0.8 * 0.3 * 0.8}, {"sheet.obj", 0.42, 0.8 * dx * 0.8}}) {

@@ -22,6 +22,7 @@ const std::vector<Control> controls = {
     {"Ctrl + wheel", "radius of the stirrer"},
     {"Double click", "pick a particle or an obstacle"},
     {"1  2  3  4", "plain, velocity, pressure, density"},
+    {"S", "fluid as a surface or as particles"},
     {"B", "boundary particles"},
     {"G", "CPU or GPU"},
     {"Tab", "panel"},
@@ -154,7 +155,12 @@ void pressKey(Ui& ui, SDL_Keycode key) {
             ui.screenshot = true;
             break;
         case SDLK_s:
-            if (ui.held & KMOD_CTRL) ui.saveCheckpoint();
+            if (ui.held & KMOD_CTRL) {
+                ui.saveCheckpoint();
+                break;
+            }
+            view.style = view.style == DrawStyle::Surface ? DrawStyle::Spheres : DrawStyle::Surface;
+            ui.stale = true;
             break;
         case SDLK_z:
             if (ui.held & KMOD_CTRL) ui.undo();

@@ -117,6 +117,10 @@ TEST_F(WindowTest, KeysChooseColoursWallsAndPanel) {
     EXPECT_GT(difference(velocity, settled(window)), seen) << "B shows the walls";
     window.act("key b");
     EXPECT_LT(difference(velocity, settled(window)), 1e-4);
+    window.act("key s");
+    EXPECT_GT(difference(velocity, settled(window)), seen) << "S shows the fluid's surface";
+    window.act("key s");
+    EXPECT_LT(difference(velocity, settled(window)), 1e-4);
     window.act("key Tab");
     EXPECT_GT(settled(window).width, velocity.width) << "without the panel the picture is wider";
     window.act("key Tab");
