@@ -4,7 +4,7 @@ BUILD ?= build
 ARGS ?=
 CMAKE_ARGS ?=
 
-.PHONY: run test build configure bench validate stress fuzz documents knobs program gpu-check gpu-bundle python sanitize check-format check-headers format release library install clean
+.PHONY: run test build configure bench validate stress fuzz documents knobs program gpu-check gpu-bundle python site sanitize check-format check-headers format release library install clean
 
 # Only what it needs: the tests are built by `make build`.
 run: program
@@ -90,6 +90,11 @@ python: configure
 
 build: configure
 	@cmake --build $(BUILD)
+
+# The documentation with its pictures as a site in build/site, links checked; needs mkdocs.
+site:
+	@command -v mkdocs >/dev/null || { echo "make site needs mkdocs: apt-get install mkdocs" >&2; exit 1; }
+	mkdocs build --quiet --site-dir $(BUILD)/site
 
 configure: install
 	@test -f $(BUILD)/build.ninja || cmake -S . -B $(BUILD) -G Ninja --log-level=WARNING $(CMAKE_ARGS)
