@@ -18,6 +18,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
@@ -65,6 +66,20 @@ Vec3 vectorOf(const std::vector<float>& v, const char* what) {
     return {v[0], v[1], v[2]};
 }
 
+// OpenGL while one of these lives. One context for all runs, to the end of the process.
+class Drawing {
+public:
+    explicit Drawing(int device) {
+        static EglContext* const only = new EglContext(device);
+        (context_ = only)->makeCurrent();
+    }
+    ~Drawing() { context_->release(); }
+    Drawing(const Drawing&) = delete;
+
+private:
+    EglContext* context_;
+};
+
 // All particles of the fluid at one moment. Arrays are views into it, and keep it alive.
 struct Cloud {
     std::vector<Particle> particles;
@@ -94,9 +109,17 @@ public:
         tellRemarks();
     }
 
+    ~Run() {
+        if (!frame_) return;
+        try {
+            const Drawing drawing(scene().compute.device);
+            frame_.reset();
+        } catch (const Error&) {}  // its names are lost with the process
+    }
+
     const Scene& scene() const { return start_.scene; }
-    double time() const { return simulation_->clock().time; }
-    int64_t steps() const { return simulation_->clock().steps; }
+    double time() { return simulation().clock().time; }
+    int64_t steps() { return simulation().clock().steps; }
 
     // Trouble that shorter steps can't help is an Error, as it ends a run of the program.
     void step(int count) {
@@ -109,13 +132,14 @@ public:
     }
     // Calls each(run), where there is one, after every `every` seconds; False ends the run there.
     void runUntil(double time, const py::object& self, const py::object& each, double every) {
+        if (!std::isfinite(time)) throw Error(Failure::Usage, "run: until must be a time, s");
         if (!each.is_none() && !(every > 0))
             throw Error(Failure::Usage, "run: every must be above 0 s when each is given");
         const double begin = this->time();
         for (int64_t calls = 1; !reached(time);) {
             const double next =
                 each.is_none() ? time : std::min(time, begin + double(calls) * every);
-            simulation_->stopAt(next);
+            simulation().stopAt(next);
             for (int k = 0; k < Looks && !reached(next); ++k) advance(1);
             look();
             if (each.is_none() || !reached(next)) continue;
@@ -125,10 +149,10 @@ public:
         }
     }
 
-    Cloud particles() { return {simulation_->particles()}; }
+    Cloud particles() { return {simulation().particles()}; }
 
     py::dict measure() {
-        const Measurement m = simulation_->measure();
+        const Measurement m = simulation().measure();
         validity_->look(m);
         tellRemarks();
         py::dict d;
@@ -144,7 +168,7 @@ public:
 
     py::dict solids() {
         py::dict all;
-        for (const SolidMeasurement& s : simulation_->measure().solids) {
+        for (const SolidMeasurement& s : simulation().measure().solids) {
             py::dict d;
             d["position"] = arrayOf(s.position), d["velocity"] = arrayOf(s.velocity);
             d["spin"] = arrayOf(s.spin), d["torque"] = arrayOf(s.torque);
@@ -158,7 +182,7 @@ public:
 
     py::dict readProbes() {
         const std::vector<double> values =
-            probes_->read(simulation_->particles(), simulation_->solidPoses());
+            probes_->read(simulation().particles(), simulation().solidPoses());
         py::dict d;
         for (size_t k = 0; k < values.size(); ++k)
             d[probes_->columns()[k].name.c_str()] = values[k];
@@ -172,7 +196,8 @@ public:
         if (restartKnobs(scene) != restartKnobs(start_.scene))
             throw Error(Failure::Usage,
                         path + ": can't change while the run goes on; begin another Run with it");
-        checkScene(scene, "set");
+        checkScene(scene, "set",
+                   ParticleCount{simulation().fluidCount(), simulation().wallCount()});
         guard_->apply(scene);
         start_.scene = scene;
     }
@@ -194,29 +219,29 @@ public:
     }
 
     void hold(const std::string& solid, const std::vector<float>& target) {
-        const std::vector<SolidMeasurement> all = simulation_->measure().solids;
+        const std::vector<SolidMeasurement> all = simulation().measure().solids;
         const auto found =
             std::find_if(all.begin(), all.end(), [&](const auto& s) { return s.name == solid; });
         if (found == all.end())
             throw Error(Failure::Usage, "hold: there is no solid \"" + solid + "\"");
-        simulation_->hold({int(found - all.begin()), vectorOf(target, "hold")});
+        simulation().hold({int(found - all.begin()), vectorOf(target, "hold")});
     }
-    void release() { simulation_->hold({}); }
+    void release() { simulation().hold({}); }
 
     void stir(const std::vector<float>& center, float radius, const std::vector<float>& velocity) {
         Stir stir;
         stir.center = vectorOf(center, "stir"), stir.radius = radius;
         stir.velocity = vectorOf(velocity, "stir");
-        simulation_->stir(stir);
+        simulation().stir(stir);
     }
 
-    void save(const std::string& path) { writeCheckpoint(path, scene(), simulation_->state()); }
+    void save(const std::string& path) { writeCheckpoint(path, scene(), simulation().state()); }
 
     py::array_t<uint8_t> picture(int width, int height) {
-        if (!context_) context_.emplace(scene().compute.device);
+        const Drawing drawing(scene().compute.device);
         if (!frame_ || frame_->width() != width || frame_->height() != height)
             frame_.emplace(width, height, scene().window.samples);
-        frame_->update(*simulation_, scene());
+        frame_->update(simulation(), scene());
         frame_->draw(scene());
         const Image image = frame_->image();
         py::array_t<uint8_t> pixels({image.height, image.width, 3});
@@ -229,47 +254,63 @@ public:
         for (const Remark& r : validity_->remarks()) all.push_back(r.text);
         return all;
     }
-    std::string device() const { return simulation_->deviceName(); }
+    std::string device() { return simulation().deviceName(); }
 
 private:
     static constexpr int Looks = 20;  // steps between two looks at the run's health
 
+    // While another thread steps nothing else may be asked of it.
+    Simulation& simulation() {
+        if (stepping_)
+            throw Error(Failure::Usage, "this Run is stepping on another thread; wait for it");
+        return *simulation_;
+    }
     void advance(int steps) {
+        Simulation& run = simulation();
+        struct Stepping {
+            bool& now;
+            explicit Stepping(bool& s) : now(s) { now = true; }
+            ~Stepping() { now = false; }
+        };
         {
+            const Stepping stepping(stepping_);  // changes with the interpreter's lock held
             py::gil_scoped_release others;
-            simulation_->step(steps);
-            simulation_->wait();
+            run.step(steps);
+            run.wait();
         }
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     }
-    bool reached(double time) const {
-        const StepState clock = simulation_->clock();
+    bool reached(double time) {
+        const StepState clock = simulation().clock();
         return clock.time >= time * (1 - 1e-9) - 1e-3 * clock.dt;
     }
     void look() {
-        Measurement m = simulation_->measure();
+        Measurement m = simulation().measure();
         const HealthGuard::Finding found = guard_->look(m);
         if (found == HealthGuard::Finding::GaveUp) throw Error(Failure::Usage, guard_->said());
+        if (found == HealthGuard::Finding::WentBack) {
+            validity_->dropAfter(m.time);
+            told_ = std::min(told_, validity_->remarks().size());
+        }
         if (!guard_->said().empty()) warn(guard_->said());
-        if (found == HealthGuard::Finding::WentBack) validity_->dropAfter(m.time);
         validity_->look(m);
         tellRemarks();
     }
     void tellRemarks() {
-        for (; told_ < validity_->remarks().size(); ++told_) warn(validity_->remarks()[told_].text);
+        while (told_ < validity_->remarks().size()) warn(validity_->remarks()[told_++].text);
     }
     static void warn(const std::string& text) {
         if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
     }
 
     Start start_;
-    std::optional<EglContext> context_;  // before the frame, which needs it to the end
     std::unique_ptr<Simulation> simulation_;
     std::optional<Probes> probes_;
     std::optional<Validity> validity_;
     std::optional<HealthGuard> guard_;
     std::optional<Frame> frame_;
-    size_t told_ = 0;
+    size_t told_ = 0;        // remarks
+    bool stepping_ = false;  // now
 };
 
 }  // namespace

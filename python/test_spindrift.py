@@ -1,4 +1,7 @@
 """What import spindrift can do. make python builds it; ctest -L python runs this."""
+import threading
+import time
+
 import numpy as np
 import pytest
 
@@ -134,3 +137,45 @@ def test_what_is_outside_its_validity_is_a_warning():
     with pytest.warns(UserWarning):
         run = spindrift.Run(full)
     assert len(run.remarks) >= 1
+
+
+def test_two_runs_draw_each_their_own():
+    one, two = spindrift.Run("dam_break", SMALL), spindrift.Run(POOL)
+    first = one.picture(320, 200)
+    other = two.picture(320, 200)
+    assert np.abs(first.astype(int) - other).max() > 50
+    np.testing.assert_array_equal(one.picture(320, 200), first)
+    del one
+    np.testing.assert_array_equal(two.picture(320, 200), other)
+
+
+def test_a_run_belongs_to_one_thread_at_a_time():
+    run = spindrift.Run("dam_break", {"simulation.spacing": 0.02, "compute.backend": "cpu"})
+    refused = []
+
+    def look():
+        for _ in range(200):
+            try:
+                run.measure()
+            except spindrift.Error as error:
+                refused.append(str(error))
+            time.sleep(0.001)
+
+    looker = threading.Thread(target=look)
+    looker.start()
+    done = 0
+    while looker.is_alive():
+        try:
+            run.step(1)
+            done += 1
+        except spindrift.Error:
+            pass
+    looker.join()
+    assert refused and "another thread" in refused[0]
+    assert run.steps == done
+
+
+def test_time_must_be_one():
+    run = spindrift.Run("dam_break", SMALL)
+    with pytest.raises(spindrift.Error, match="must be a time"):
+        run.run(float("nan"))

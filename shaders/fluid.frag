@@ -20,9 +20,11 @@ void main() {
     if (inside <= 0.0) discard;
     float depth = sqrt(inside) * sphere.y;
 #ifdef THICKNESS
-    float hidden = 2.0 * texelFetch(scene, ivec2(gl_FragCoord.xy * perPixel.y), 0).r - 1.0;
+    ivec2 there = min(ivec2(gl_FragCoord.xy * perPixel.y), textureSize(scene, 0) - 1);
+    float hidden = 2.0 * texelFetch(scene, there, 0).r - 1.0;
     if (sphere.x > frame.projection[3][2] / (hidden + frame.projection[2][2])) discard;
-    float front = texelFetch(distances, ivec2(gl_FragCoord.xy * perPixel.x), 0).r;
+    there = min(ivec2(gl_FragCoord.xy * perPixel.x), textureSize(distances, 0) - 1);
+    float front = texelFetch(distances, there, 0).r;
     // Spheres overlap by the cube of their radius: what they hold is what particles hold.
     thickness = 2.0 * depth / (1.5 * 1.5);
     float weight = front > 0.0 ? inside * exp2(-max(sphere.x - front, 0.0) / sphere.y) : 0.0;

@@ -8,7 +8,7 @@ layout(std140, binding = 0) uniform Frame {
     vec4 picture;                   // width, height, samples, line width in px
     vec4 domain;                    // size in m, step of the ground's grid (0 = no ground)
     vec4 particle;                  // radius in m, smallest in px, px a metre at distance 1, fluids
-    vec4 color;                     // lowest value, 1 / span, row of the table, 1 = plain
+    vec4 color;                     // lowest value, 1 / span, row of the table; 1 = plain, 2 = plain in two dimensions
 } frame;
 
 const int tileSize = 8;   // px, see render/occlusion.h

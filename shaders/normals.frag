@@ -11,7 +11,9 @@ vec3 placeOf(ivec2 texel, float distance) {
 
 // The difference to whichever neighbour is nearer in depth: over edges there is no slope.
 vec3 slope(ivec2 texel, ivec2 step, vec3 here, inout float inside) {
-    float a = texelFetch(distances, texel + step, 0).r, b = texelFetch(distances, texel - step, 0).r;
+    ivec2 last = textureSize(distances, 0) - 1;
+    float a = texelFetch(distances, min(texel + step, last), 0).r,
+          b = texelFetch(distances, max(texel - step, ivec2(0)), 0).r;
     vec3 ahead = placeOf(texel + step, a) - here, back = here - placeOf(texel - step, b);
     if (a > 0.0 && b > 0.0) return abs(ahead.z) < abs(back.z) ? ahead : back;
     inside = 0.0;

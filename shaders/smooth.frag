@@ -19,10 +19,11 @@ void main() {
     float stride = max(pixels / float(pairs), 1.0);
     float behind = 4.0 * radius, before = behind;   // how far neighbours may be
     float sum = own, weights = 1.0;
+    ivec2 last = textureSize(distances, 0) - 1;
     for (int k = 1; k <= pairs; ++k) {
         ivec2 away = ivec2(round(float(k) * stride)) * along;
-        float a = texelFetch(distances, here + away, 0).r,
-              b = texelFetch(distances, here - away, 0).r;
+        float a = texelFetch(distances, min(here + away, last), 0).r,
+              b = texelFetch(distances, max(here - away, ivec2(0)), 0).r;
         // Without its partner a neighbour would tilt the surface.
         if (a <= 0.0 || b <= 0.0 || max(a, b) > own + behind || min(a, b) < own - before) continue;
         float x = float(k) / float(pairs), weight = exp(-2.0 * x * x);

@@ -23,7 +23,8 @@ Seen surfaceAt(vec2 at) {
     vec4 s[4];
     float nearest = 1e30;
     for (int k = 0; k < 4; ++k) {
-        s[k] = texelFetch(surface, first + ivec2(k % 2, k / 2), 0);
+        ivec2 texel = clamp(first + ivec2(k % 2, k / 2), ivec2(0), textureSize(surface, 0) - 1);
+        s[k] = texelFetch(surface, texel, 0);
         if (s[k].w > 0.0) nearest = min(nearest, s[k].w);
     }
     Seen seen = Seen(vec3(0.0), 0.0, 0.0, 0.0);
@@ -84,7 +85,8 @@ void main() {
     float above = dot(normal, frame.sky.xyz), key = max(dot(normal, lampAt), 0.0);
     vec3 scattered = vec3(0.03, 0.24, 0.58) * (0.60 + 0.35 * key + 0.25 * above);
     vec3 water = back * passes + scattered * (1.0 - passes);
-    water = mix(water, vec3(0.62, 0.70, 0.76) * (0.55 + 0.45 * key), 0.5 * torn(at, distance));
+    float foam = frame.color.w > 1.0 ? 0.0 : 0.5 * torn(at, distance);
+    water = mix(water, vec3(0.62, 0.70, 0.76) * (0.55 + 0.45 * key), foam);
     if (frame.color.w == 0.0) {
         vec4 tint = texture(tints, at);
         vec3 color = tint.rgb / max(tint.a, 1e-6);

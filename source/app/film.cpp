@@ -17,9 +17,13 @@ namespace spindrift {
 namespace fs = std::filesystem;
 
 Film::Film(const std::string& path, int width, int height, double rate) : path_(path) {
-    requireFormat(path, {"mp4", "mkv", "webm"});
+    std::error_code none;
+    const fs::path file = fs::weakly_canonical(path, none);  // what a link leads to
+    const std::string kind = file.extension().string();
+    if (kind != ".mp4" && kind != ".mkv" && kind != ".webm")
+        fail("a film is an .mp4, .mkv or .webm; name one of them");
     requireWritable(path);
-    const fs::path file = path;
+    if (isStream(path)) fail("it is no file; name one");
     unfinished_ = (file.parent_path() / fmt::format("{}.{}.part{}", file.stem().string(),
                                                     os::processId(), file.extension().string()))
                       .string();
@@ -28,9 +32,9 @@ Film::Film(const std::string& path, int width, int height, double rate) : path_(
         fmt::format("{}x{}", width, height), "-r", fmt::format("{}", rate), "-i", "-",
         // Players want an even number of pixels, and colours at half the resolution.
         "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p"};
-    if (!path.ends_with(".webm"))
+    if (kind != ".webm")
         command.insert(command.end(), {"-c:v", "libx264", "-preset", "veryfast", "-crf", "18"});
-    command.push_back(unfinished_);
+    command.push_back("file:" + unfinished_);  // whatever its name looks like
     if (!ffmpeg_.start(command))
         fail(errno == ENOENT ? "there is no ffmpeg; install it (apt-get install ffmpeg)"
                              : fmt::format("ffmpeg does not start ({})", std::strerror(errno)));
@@ -41,7 +45,7 @@ Film::~Film() {
     std::error_code none;
     try {
         beside_.wait();
-    } catch (const Error&) {}
+    } catch (...) {}  // has been told
     ffmpeg_.finish();
     fs::remove(unfinished_, none);
 }

@@ -17,6 +17,8 @@ struct FluidLevelSet::Grid {
 
 namespace {
 
+constexpr double Band = 3;  // cells on either side of the surface that have distances
+
 // Three numbers a point, as OpenVDB reads them.
 std::vector<openvdb::Vec3d> pointsOf(const std::vector<Vec3d>& places) {
     std::vector<openvdb::Vec3d> points;
@@ -67,15 +69,15 @@ FluidMesh meshAt(const openvdb::FloatGrid& distances, double shift) {
 
 FluidLevelSet::FluidLevelSet(const std::vector<Vec3d>& particles, double spacing, double cell,
                              int smoothings)
-    : grid_(std::make_unique<Grid>()), spacing_(spacing) {
+    : grid_(std::make_unique<Grid>()), farthest_(std::min(0.45, 0.9 * Band * cell) * spacing) {
     openvdb::initialize();
     // Some eight particles a cell of their grid, as OpenVDB likes it.
     const auto points = openvdb::points::createPointDataGrid<openvdb::points::NullCodec,
                                                              openvdb::points::PointDataGrid>(
         pointsOf(particles), *openvdb::math::Transform::createLinearTransform(2 * spacing));
-    const double radius = 0.8 * spacing, search = 2.2 * spacing, band = 3;  // band in cells
+    const double radius = 0.8 * spacing, search = 2.2 * spacing;
     grid_->distances = openvdb::points::rasterizeSmoothSpheres(
-        *points, radius, search, band,
+        *points, radius, search, Band,
         openvdb::math::Transform::createLinearTransform(cell * spacing));
     openvdb::tools::Filter<openvdb::FloatGrid> filter(*grid_->distances);
     if (smoothings > 0) filter.mean(1, smoothings);
@@ -84,12 +86,12 @@ FluidLevelSet::~FluidLevelSet() = default;
 
 // The secant method; at first a shift changes the volume by the area.
 FluidMesh FluidLevelSet::mesh(double volume, double& shift) const {
-    const double most = 0.45 * spacing_;
     shift = 0;
     FluidMesh mesh = meshAt(*grid_->distances, shift);
     double slope = areaOf(mesh);
     for (int k = 0; k < 6 && std::abs(mesh.volume - volume) > 1e-3 * volume && slope > 0; ++k) {
-        const double next = std::clamp(shift + (volume - mesh.volume) / slope, -most, most);
+        const double next =
+            std::clamp(shift + (volume - mesh.volume) / slope, -farthest_, farthest_);
         if (next == shift) break;
         const double before = mesh.volume;
         mesh = meshAt(*grid_->distances, next);

@@ -36,7 +36,7 @@ public:
 private:
     struct Grid;
     std::unique_ptr<Grid> grid_;
-    double spacing_;
+    double farthest_ = 0;  // m, that a shift may be
 };
 
 }  // namespace spindrift

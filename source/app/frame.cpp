@@ -180,6 +180,7 @@ void Frame::draw(const Scene& scene, std::vector<Ring> rings) {
     settings.diameter = scene.simulation.spacing * view.particleScale;
     settings.minimumPixels = scene.window.pointSize;
     settings.surface = view.style == DrawStyle::Surface;
+    settings.flat = scene.simulation.dimensions == 2;
     settings.plain = view.colorBy == ColorBy::Plain;
     settings.map = view.colorMap;
     settings.rangeMin = r.min;

@@ -56,11 +56,12 @@ const std::vector<OutputFormat>& outputFormats() {
 // again.
 void requireOutputs(const Output& output, const Start& start) {
     const std::string source = whereItLeads(start.file);
-    if (!output.series.empty()) MomentFormat{output.series};
     std::set<std::string> places;
     for (const OutputFormat& format : outputFormats()) {
         const std::string& file = output.*format.file;
         if (file.empty()) continue;
+        // A series without an index is a folder alone.
+        if (format.file == &Output::series && !MomentFormat(file).hasIndex()) continue;
         requireFormat(file, format.extensions);
         requireWritable(file);
         const std::string place = whereItLeads(file);
@@ -159,12 +160,9 @@ public:
             finish();
         } catch (...) {  // a GPU was lost, a disk is full: what was measured until then is kept
             progress_.clear();
-            try {
-                series_->finish();
-                if (particles_) particles_->finish();
-                if (film_) film_->finish();
-                keepLastGood();
-            } catch (const Error&) {}  // the first trouble is the one to tell
+            tryTo([&] { series_->finish(); });
+            tryTo([&] { keepLastGood(); });
+            tryTo([&] { finishBeside(); });
             throw;
         }
         if (trouble_.empty() && os::StopSignals::received() != 0) {
@@ -181,6 +179,17 @@ public:
     }
 
 private:
+    // The first trouble is the one to tell.
+    template <class F> static void tryTo(const F& f) {
+        try {
+            f();
+        } catch (const Error&) {}
+    }
+    // What is written beside the run.
+    void finishBeside() {
+        if (particles_) particles_->finish();
+        if (film_) film_->finish();
+    }
     bool done() const {
         const double time = asWritten(scene_.output.time);
         return (endStep_ > 0 && steps_ >= endStep_) ||
@@ -367,8 +376,6 @@ private:
         judge();
         if (hasRows() && series_->lastTime() < now_.time) addRow();
         series_->finish();
-        if (particles_) particles_->finish();
-        if (film_) film_->finish();
         if (!output.checkpoint.empty() && trouble_.empty())
             writeCheckpointOf(simulation_->state());
         else
@@ -377,6 +384,7 @@ private:
             saveParticles(output.particles, simulation_->particles(),
                           massesToSave(scene_, *simulation_), fluidsToSave(scene_, *simulation_));
         if (!output.screenshot.empty()) pictures_->save(*simulation_, scene_, output.screenshot);
+        finishBeside();
         if (!quiet_)
             summarise();
         else if (!isInvalid())
@@ -455,6 +463,7 @@ private:
     int64_t first_ = 0, steps_ = 0,
             endStep_ = 0;  // of the whole run: before this part of it, until now, at its end or 0
     int64_t made_ = 0;     // here, with those that were made in vain
+    os::StopSignals signals_;  // until a film's reader is gone
     std::optional<Film> film_;
     std::optional<ParticleSeries> particles_;
     double filmed_ = -1;  // s, of the film's last frame
@@ -464,7 +473,6 @@ private:
     double written_ = -1;             // s simulated, of the checkpoint
     double evaluationsBefore_ = 0;    // this run
     double stepSeconds_ = 0;          // of wall time
-    os::StopSignals signals_;
 };
 
 }  // namespace

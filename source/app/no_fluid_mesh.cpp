@@ -6,7 +6,7 @@ namespace spindrift {
 
 struct FluidLevelSet::Grid {};
 
-FluidLevelSet::FluidLevelSet(const std::vector<Vec3d>&, double, double, int) : spacing_(0) {
+FluidLevelSet::FluidLevelSet(const std::vector<Vec3d>&, double, double, int) {
     throw Error(Failure::Usage,
                 "surface: this build has no OpenVDB; install it (apt-get install libopenvdb-dev) "
                 "and build anew");

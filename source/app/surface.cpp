@@ -36,21 +36,31 @@ bool writeObj(const std::string& path, const FluidMesh& mesh) {
 
 // ply, obj or vdb.
 std::string formatOf(const SurfaceOptions& options) {
-    std::string format = options.format;
-    if (format.empty() && options.files.size() == 1)
-        format = fs::path(options.out).extension().string();
-    if (!format.empty() && format[0] == '.') format.erase(0, 1);
-    if (format.empty()) return "ply";
+    const std::string kind = fs::path(options.out).extension().string(),
+                      named = kind.empty() ? "" : kind.substr(1);
+    const std::string format = !options.format.empty() ? options.format
+                               : !named.empty()        ? named
+                                                       : "ply";
     if (std::find(Formats.begin(), Formats.end(), format) == Formats.end())
         throw Error(Failure::Usage,
                     fmt::format("surface: \"{}\" is no format; take ply, obj or vdb", format));
+    if (!named.empty() && named != format)
+        throw Error(Failure::Usage,
+                    fmt::format("surface: --out {} is no {}; name it .{}, or a folder without a .",
+                                options.out, format, format));
     return format;
 }
 
-// Where the surface of each table goes: one file, or into a folder under the table's name.
+// Where the surface of each table goes: one file, or into a folder under the table's name. A name
+// without an extension is a folder's.
 std::vector<std::string> targetsOf(const SurfaceOptions& options, const std::string& format) {
-    if (options.files.size() == 1 && !options.out.empty() && !fs::is_directory(options.out))
+    if (fs::path(options.out).has_extension()) {
+        if (options.files.size() > 1)
+            throw Error(Failure::Usage,
+                        fmt::format("surface: {} tables can't become one {}; name a folder",
+                                    options.files.size(), options.out));
         return {options.out};
+    }
     if (!options.out.empty()) requireFolder(options.out);
     std::vector<std::string> targets;
     std::set<std::string> taken;
@@ -68,6 +78,11 @@ std::vector<std::string> targetsOf(const SurfaceOptions& options, const std::str
 }
 
 double spacingOf(const std::string& file, const std::vector<Vec3d>& places, double asked) {
+    const auto [low, high] = std::minmax_element(
+        places.begin(), places.end(), [](const Vec3d& a, const Vec3d& b) { return a.z < b.z; });
+    if (!places.empty() && low->z == high->z)
+        throw Error(Failure::Usage,
+                    file + ": its particles lie in a plane; a surface needs three dimensions");
     const double spacing = asked > 0 ? asked : spacingBetween(places, 3);
     if (!(spacing > 0))
         throw Error(Failure::Usage,
@@ -95,11 +110,13 @@ void makeSurface(const std::string& file, const std::string& target, const std::
     const FluidLevelSet distances(table.positions, spacing, options.cell, options.smoothings);
     double shift = 0;
     FluidMesh mesh = distances.mesh(volume, shift);
+    if (mesh.triangles.empty())
+        throw Error(Failure::Usage, file + ": no surface was found; is --spacing right?");
     const size_t triangles = mesh.triangles.size();
     const double enclosed = mesh.volume;
     if (format == "ply") {
         const Piece piece{"surface", std::move(mesh.points), {}, std::move(mesh.triangles)};
-        MomentFormat(target).write(target, piece);
+        MomentFormat("surface.ply").write(target, piece);
     } else {
         replaceFile(target, [&](const std::string& temporary) {
             return format == "obj" ? writeObj(temporary, mesh)

@@ -28,13 +28,13 @@ void Beside::work() {
         } catch (...) { trouble = std::current_exception(); }
         lock.lock();
         busy_ = false;
-        if (trouble && !trouble_) trouble_ = trouble;
+        if (trouble) trouble_ = trouble, undone_.clear();
         changed_.notify_all();
     }
 }
 
 void Beside::tellTrouble() {
-    if (trouble_) std::rethrow_exception(std::exchange(trouble_, nullptr));
+    if (trouble_) std::rethrow_exception(trouble_);
 }
 
 void Beside::add(std::function<void()> thing) {

@@ -10,8 +10,8 @@
 
 namespace spindrift {
 
-// Does one thing after the other on a thread of its own. A caller waits when too many are undone,
-// and gets what a thing has thrown at its next call.
+// Does one thing after the other on a thread of its own. A caller waits when too many are undone.
+// After one has thrown no other is done, and each call throws the same.
 class Beside {
 public:
     Beside() : thread_([this] { work(); }) {}
@@ -28,7 +28,7 @@ private:
     std::mutex mutex_;
     std::condition_variable changed_;
     std::deque<std::function<void()>> undone_;
-    std::exception_ptr trouble_;
+    std::exception_ptr trouble_;  // the first
     bool busy_ = false, ends_ = false;
     std::thread thread_;  // last: the rest is there when it begins
 };

@@ -7,10 +7,12 @@
 #include <fmt/format.h>
 
 #include <bit>
+#include <cstdlib>
 #include <cstring>
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <functional>
+#include <iterator>
 
 namespace spindrift {
 namespace {
@@ -93,16 +95,19 @@ bool writeVtp(const std::string& path, const Piece& piece) {
     return bool(out.flush());
 }
 
-std::string pvdIndex(const std::vector<MomentFile>& files) {
-    std::string xml =
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n";
-    int part = 0;
-    for (size_t k = 0; k < files.size(); ++k) {
-        part = k > 0 && files[k].time == files[k - 1].time ? part + 1 : 0;
-        xml += fmt::format("<DataSet timestep=\"{}\" part=\"{}\" name=\"{}\" file=\"{}\"/>\n",
-                           files[k].time, part, files[k].name, files[k].file);
-    }
-    return xml + "</Collection>\n</VTKFile>\n";
+std::string escaped(const std::string& text) {
+    std::string safe;
+    for (const char c : text)
+        safe += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
+    return safe;
+}
+
+std::string pvdEntry(double time, const std::vector<PieceFile>& pieces) {
+    std::string xml;
+    for (size_t k = 0; k < pieces.size(); ++k)
+        xml += fmt::format("<DataSet timestep=\"{}\" part=\"{}\" name=\"{}\" file=\"{}\"/>\n", time,
+                           k, pieces[k].name, escaped(pieces[k].file));
+    return xml;
 }
 
 // --- HDF5, and the XDMF that says what is in it ---
@@ -126,16 +131,16 @@ bool writeHdf5(const std::string& path, const Piece& piece) {
     });
 }
 
-std::string xdmfArray(const MomentFile& m, const std::string& name, size_t count, int components,
+std::string xdmfArray(const PieceFile& m, const std::string& name, size_t count, int components,
                       bool integer, int precision) {
     return fmt::format(
         "<DataItem Format=\"HDF\" NumberType=\"{}\" Precision=\"{}\" Dimensions=\"{}{}\">"
         "{}:/{}</DataItem>\n",
         integer ? "Int" : "Float", precision, count,
-        components > 1 ? fmt::format(" {}", components) : "", m.file, name);
+        components > 1 ? fmt::format(" {}", components) : "", escaped(m.file), name);
 }
 
-std::string xdmfGrid(const MomentFile& m) {
+std::string xdmfGrid(const PieceFile& m) {
     std::string xml = fmt::format("<Grid Name=\"{}\" GridType=\"Uniform\">\n", m.name);
     if (m.triangles > 0)
         xml += fmt::format(
@@ -158,22 +163,13 @@ std::string xdmfGrid(const MomentFile& m) {
     return xml + "</Grid>\n";
 }
 
-std::string xdmfIndex(const std::vector<MomentFile>& files) {
-    std::string xml =
-        "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n"
-        "<Grid Name=\"run\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
-    for (size_t k = 0; k < files.size(); ++k) {
-        const bool first = k == 0 || files[k].time != files[k - 1].time,
-                   last = k + 1 == files.size() || files[k].time != files[k + 1].time;
-        if (first)
-            xml += fmt::format(
-                "<Grid Name=\"moment\" GridType=\"Collection\" CollectionType=\"Spatial\">\n"
-                "<Time Value=\"{}\"/>\n",
-                files[k].time);
-        xml += xdmfGrid(files[k]);
-        if (last) xml += "</Grid>\n";
-    }
-    return xml + "</Grid>\n</Domain>\n</Xdmf>\n";
+std::string xdmfEntry(double time, const std::vector<PieceFile>& pieces) {
+    std::string xml = fmt::format(
+        "<Grid Name=\"moment\" GridType=\"Collection\" CollectionType=\"Spatial\">\n"
+        "<Time Value=\"{}\"/>\n",
+        time);
+    for (const PieceFile& piece : pieces) xml += xdmfGrid(piece);
+    return xml + "</Grid>\n";
 }
 
 // --- tables of points ---
@@ -246,15 +242,29 @@ bool writeCsv(const std::string& path, const Piece& piece) {
     return bool(file.flush());
 }
 
+// Of an index: what stands before its moments and after them, where a moment begins, and what its
+// time stands behind.
+struct Index {
+    const char *head, *tail, *begin, *time;
+    std::string (*entry)(double time, const std::vector<PieceFile>&);
+};
+constexpr Index Pvd = {
+    "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n",
+    "</Collection>\n</VTKFile>\n", "<DataSet ", "timestep=\"", pvdEntry};
+constexpr Index Xdmf = {
+    "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n"
+    "<Grid Name=\"run\" GridType=\"Collection\" CollectionType=\"Temporal\">\n",
+    "</Grid>\n</Domain>\n</Xdmf>\n", "<Grid Name=\"moment\"", "<Time Value=\"", xdmfEntry};
+
 struct Kind {
     const char *index, *extension;
     bool (*write)(const std::string&, const Piece&);
-    std::string (*makeIndex)(const std::vector<MomentFile>&);
+    const Index* in = nullptr;
 };
-constexpr Kind Kinds[] = {{".pvd", ".vtp", writeVtp, pvdIndex},
-                          {".xdmf", ".h5", writeHdf5, xdmfIndex},
-                          {".ply", ".ply", writePly, nullptr},
-                          {".csv", ".csv", writeCsv, nullptr}};
+constexpr Kind Kinds[] = {{".pvd", ".vtp", writeVtp, &Pvd},
+                          {".xdmf", ".h5", writeHdf5, &Xdmf},
+                          {".ply", ".ply", writePly},
+                          {".csv", ".csv", writeCsv}};
 
 const Kind& kindOf(const std::string& extension) {
     for (const Kind& k : Kinds)
@@ -274,6 +284,9 @@ MomentFormat::MomentFormat(const std::string& path) {
                     fmt::format("{}: a series is no \"{}\"; name it .pvd (ParaView), .xdmf (HDF5), "
                                 ".ply or .csv",
                                 path, given));
+    // XDMF says file:dataset.
+    if (extension_ == ".h5" && path.find(':') != std::string::npos)
+        throw Error(Failure::Output, path + ": an .xdmf can't have a : in its name");
 }
 
 void MomentFormat::write(const std::string& file, const Piece& piece) const {
@@ -281,9 +294,36 @@ void MomentFormat::write(const std::string& file, const Piece& piece) const {
     replaceFile(file, [&](const std::string& temporary) { return kind.write(temporary, piece); });
 }
 
-std::string MomentFormat::index(const std::vector<MomentFile>& files) const {
-    const Kind& kind = kindOf(extension_);
-    return kind.makeIndex ? kind.makeIndex(files) : "";
+IndexEntry MomentFormat::entry(double time, const std::vector<PieceFile>& pieces) const {
+    const Index* in = kindOf(extension_).in;
+    return {time, in ? in->entry(time, pieces) : ""};
+}
+
+std::string MomentFormat::index(const std::vector<IndexEntry>& entries) const {
+    const Index& in = *kindOf(extension_).in;
+    std::string text = in.head;
+    for (const IndexEntry& e : entries) text += e.text;
+    return text + in.tail;
+}
+
+std::vector<IndexEntry> MomentFormat::readIndex(const std::string& path) const {
+    const Index* in = kindOf(extension_).in;
+    std::ifstream file(path, std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    if (!in || !text.starts_with(in->head) || !text.ends_with(in->tail)) return {};
+    std::vector<IndexEntry> entries;
+    const size_t end = text.size() - std::strlen(in->tail);
+    for (size_t at = std::strlen(in->head); at < end;) {
+        const size_t next = std::min(text.find(in->begin, at + 1), end),
+                     time = text.find(in->time, at);
+        if (time >= next) return {};
+        const double seconds = std::strtod(text.c_str() + time + std::strlen(in->time), nullptr);
+        // Pieces of a moment may each begin anew.
+        if (entries.empty() || entries.back().time != seconds) entries.push_back({seconds, ""});
+        entries.back().text += text.substr(at, next - at);
+        at = next;
+    }
+    return entries;
 }
 
 }  // namespace spindrift

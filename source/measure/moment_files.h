@@ -25,12 +25,16 @@ struct Piece {
     std::vector<std::array<int32_t, 3>> triangles;
 };
 
-// Where one piece of one moment is.
-struct MomentFile {
-    double time = 0;         // s
+// Where one piece of a moment is, and what is in it.
+struct PieceFile {
     std::string name, file;  // of the piece; relative to the index
     size_t points = 0, triangles = 0;
     std::vector<std::pair<std::string, int>> fields;  // name, components; negative: integers
+};
+// What an index says of a moment.
+struct IndexEntry {
+    double time = 0;  // s
+    std::string text;
 };
 
 // How a series is written: an index, if there is one, and a file for each piece of each moment.
@@ -40,7 +44,7 @@ struct MomentFile {
 //     .csv    no index; particles alone, with the names that bodies of shape file know
 class MomentFormat {
 public:
-    // Throws Error (Output) for any other extension.
+    // Throws Error (Output) for any other extension, and for a name that its readers can't take.
     explicit MomentFormat(const std::string& path);
 
     // Of the files of the moments.
@@ -48,8 +52,13 @@ public:
     bool takesTriangles() const { return extension_ != ".csv"; }
     // Throws Error (Output).
     void write(const std::string& file, const Piece&) const;
-    // The whole index; "" where there is none. Entries of a moment follow each other.
-    std::string index(const std::vector<MomentFile>&) const;
+    bool hasIndex() const { return extension_ == ".vtp" || extension_ == ".h5"; }
+    IndexEntry entry(double time, const std::vector<PieceFile>&) const;
+    // The whole index.
+    std::string index(const std::vector<IndexEntry>&) const;
+    // What is in an index that was written before; nothing where there is none, or another
+    // program's.
+    std::vector<IndexEntry> readIndex(const std::string& path) const;
 
 private:
     std::string extension_;

@@ -1,5 +1,6 @@
 #include "measure/particle_series.h"
 
+#include "core/error.h"
 #include "core/output_file.h"
 #include "scene/output_fields.h"
 #include "scene/sample_object.h"
@@ -7,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <utility>
 
@@ -54,28 +56,58 @@ ParticleSeries::ParticleSeries(const Scene& scene, Simulation& simulation,
       format_(path_),
       corner_(toDouble(scene.domain.min)),
       fields_(fieldsOf(scene.output.fields)),
-      surfaces_(std::move(surfaces)) {
+      surfaces_(std::move(surfaces)),
+      interval_(interval) {
+    requireOwnFolder(scene);
     requireFolder(folder_);
     const std::vector<uint16_t> bodies = simulation.state().particles.bodies;
     fluids_.assign(bodies.begin(), bodies.end());
     fluids_.resize(size_t(simulation.fluidCount()), 0);
-    for (size_t i = 0; i < fluids_.size(); ++i)
-        masses_.push_back(
-            float(particleVolume(scene) *
-                  (bodies.empty() ? scene.fluid.restDensity
-                                  : restDensity(scene, scene.fluid.bodies[bodies[i]]))));
+    const float mass = particleMass(scene);
+    masses_.assign(fluids_.size(), mass);
+    for (size_t i = 0; i < bodies.size(); ++i)
+        masses_[i] =
+            mass * restDensity(scene, scene.fluid.bodies[bodies[i]]) / scene.fluid.restDensity;
     if (!scene.objects.empty()) objects_ = sampleObjects(scene).objects;
-    if (now.steps == 0) return;
-    // What the run before wrote, as far as it is there.
-    const Piece fluid = fluidOf(simulation.particles()), solids = solidsAt(simulation.solidPoses()),
-                objects = objectsOf(simulation.state());
-    for (size_t k = 0; double(k) * interval <= now.time * (1 + 1e-9); ++k) {
-        if (!fs::exists(fileOf("fluid", k))) break;
-        times_.push_back(double(k) * interval);
-        note(times_.back(), fluid, k);
-        if (fs::exists(fileOf("solids", k))) posedNumber_ = k;
-        if (hasSolids()) note(times_.back(), solids, posedNumber_);
-        if (!objects_.empty()) note(times_.back(), objects, k);
+    if (now.steps == 0)
+        removeOlder();
+    else
+        goOn(now.time * (1 + 1e-9));
+}
+
+// With what the run before wrote until this time, s.
+void ParticleSeries::goOn(double time) {
+    entries_ = format_.readIndex(path_);
+    std::erase_if(entries_, [&](const IndexEntry& e) { return e.time > time; });
+    if (!entries_.empty()) lastTime_ = entries_.back().time;
+    const auto last = size_t(time / interval_);
+    if (!format_.hasIndex() && fs::exists(fileOf("fluid", last)))
+        lastTime_ = double(last) * interval_;
+}
+
+// What the scene begins with must not be written over.
+void ParticleSeries::requireOwnFolder(const Scene& scene) const {
+    std::vector<std::string> inputs;
+    for (const Body& body : scene.fluid.bodies) inputs.push_back(body.path);
+    for (const Solid& solid : scene.solids) inputs.push_back(solid.path);
+    for (const Object& object : scene.objects) inputs.push_back(object.path);
+    std::error_code none;
+    const fs::path own = fs::weakly_canonical(folder_, none);
+    for (const std::string& input : inputs)
+        if (!input.empty() && fs::weakly_canonical(input, none).parent_path() == own)
+            throw Error(Failure::Output,
+                        fmt::format("{}: its folder {} holds {}, which the scene begins with; give "
+                                    "the series another name",
+                                    path_, folder_, input));
+}
+
+void ParticleSeries::removeOlder() const {
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(folder_, none)) {
+        const std::string name = entry.path().filename().string();
+        for (const char* piece : {"fluid_", "solids_", "objects_"})
+            if (name.starts_with(piece) && name.ends_with(format_.extension()))
+                fs::remove(entry.path(), none);
     }
 }
 
@@ -133,50 +165,56 @@ Piece ParticleSeries::objectsOf(const RunState& state) const {
     return objects;
 }
 
-void ParticleSeries::note(double time, const Piece& piece, size_t number) {
-    MomentFile m;
-    m.time = time, m.name = piece.name, m.points = piece.points.size();
-    m.triangles = piece.triangles.size();
-    m.file = (fs::path(folder_).filename() / fs::path(fileOf(piece.name, number)).filename())
-                 .generic_string();
+PieceFile ParticleSeries::describe(const Piece& piece, size_t number) const {
+    PieceFile file;
+    file.name = piece.name, file.points = piece.points.size();
+    file.triangles = piece.triangles.size();
+    file.file = (fs::path(folder_).filename() / fs::path(fileOf(piece.name, number)).filename())
+                    .generic_string();
     for (const PointField& f : piece.fields)
-        m.fields.push_back({f.name, f.values.index() == 1 ? -f.components : f.components});
-    files_.push_back(std::move(m));
+        file.fields.push_back({f.name, f.values.index() == 1 ? -f.components : f.components});
+    return file;
 }
 
-void ParticleSeries::put(double time, Piece piece, size_t number) {
-    note(time, piece, number);
-    beside_.add([this, file = fileOf(piece.name, number), piece = std::move(piece)] {
-        format_.write(file, piece);
+PieceFile ParticleSeries::put(Piece piece, size_t number) {
+    PieceFile file = describe(piece, number);
+    beside_.add([this, path = fileOf(piece.name, number), piece = std::move(piece)] {
+        format_.write(path, piece);
     });
+    return file;
 }
 
 void ParticleSeries::add(Simulation& simulation, double time) {
-    const size_t number = times_.size();
-    put(time, fluidOf(simulation.particles()), number);
+    const auto number = size_t(std::llround(time / interval_));
+    std::vector<PieceFile> pieces = {put(fluidOf(simulation.particles()), number)};
     if (hasSolids()) {
         const std::vector<SolidPose> poses = simulation.solidPoses();
-        if (posed_.size() == poses.size() &&
-            std::equal(poses.begin(), poses.end(), posed_.begin(), isSamePose)) {
-            note(time, solidsAt(poses), posedNumber_);
-        } else {
-            posed_ = poses, posedNumber_ = number;
-            put(time, solidsAt(poses), number);
-        }
+        const bool stayed = posed_.size() == poses.size() &&
+                            std::equal(poses.begin(), poses.end(), posed_.begin(), isSamePose);
+        if (!stayed) posed_ = poses, posedNumber_ = number;
+        pieces.push_back(stayed ? describe(solidsAt(poses), posedNumber_)
+                                : put(solidsAt(poses), number));
     }
-    if (!objects_.empty()) put(time, objectsOf(simulation.state()), number);
-    times_.push_back(time);
+    if (!objects_.empty()) pieces.push_back(put(objectsOf(simulation.state()), number));
+    entries_.push_back(format_.entry(time, pieces));
+    lastTime_ = time;
+    const auto now = Clock::now();
+    if (now - indexed_ >= std::chrono::seconds(1)) indexed_ = now, writeIndex();
+}
+
+void ParticleSeries::finish() {
     writeIndex();
+    beside_.wait();
 }
 
 void ParticleSeries::writeIndex() {
-    if (std::string text = format_.index(files_); !text.empty())
-        beside_.add([this, text = std::move(text)] { writeText(path_, text); });
+    if (format_.hasIndex())
+        beside_.add([this, text = format_.index(entries_)] { writeText(path_, text); });
 }
 
 void ParticleSeries::dropAfter(double time) {
-    std::erase_if(times_, [&](double t) { return t > time; });
-    std::erase_if(files_, [&](const MomentFile& m) { return m.time > time; });
+    std::erase_if(entries_, [&](const IndexEntry& e) { return e.time > time; });
+    lastTime_ = entries_.empty() ? -1 : entries_.back().time;
     posed_.clear();
     writeIndex();
 }

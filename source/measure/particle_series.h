@@ -5,6 +5,7 @@
 #include "measure/moment_files.h"
 #include "sim/simulation.h"
 
+#include <chrono>
 #include <string>
 #include <vector>
 
@@ -17,21 +18,22 @@ struct SolidSurface {
 };
 
 // output.series: for a path run.pvd the index run.pvd and beside it run/fluid_00000.vtp,
-// run/solids_00000.vtp and run/objects_00000.vtp, as moment_files.h has them. Solids that stay are
-// written once. A run that goes on adds to what is there.
+// run/solids_00000.vtp and run/objects_00000.vtp, as moment_files.h has them; the number says which
+// of the series' moments it is. Solids that stay are written once. A new run takes the files of an
+// older one away; a run that goes on adds to what its index names.
 class ParticleSeries {
 public:
     // `surfaces`: of the scene's solids, in their order; they may be empty. Throws Error (Output)
-    // where nothing can be written, or fields are asked for that there aren't.
+    // where nothing can be written, or what the scene begins with lies there; (Scene) where fields
+    // are asked for that there aren't.
     ParticleSeries(const Scene&, Simulation&, std::vector<SolidSurface> surfaces,
                    const Measurement& now, double interval);
     void add(Simulation&, double time);
     // The run has gone back to this time, s.
     void dropAfter(double time);
-    void finish() { beside_.wait(); }
-    // Of those that are written, with those that were there; s, of the last, -1: there is none.
-    size_t moments() const { return times_.size(); }
-    double lastTime() const { return times_.empty() ? -1 : times_.back(); }
+    void finish();
+    size_t moments() const { return entries_.size(); }
+    double lastTime() const { return lastTime_; }  // s, of the last one that is there; -1: none
 
 private:
     bool hasSolids() const { return !surfaces_.empty() && format_.takesTriangles(); }
@@ -39,8 +41,11 @@ private:
     Piece fluidOf(const std::vector<Particle>&) const;
     Piece solidsAt(const std::vector<SolidPose>&) const;
     Piece objectsOf(const RunState&) const;
-    void note(double time, const Piece&, size_t number);
-    void put(double time, Piece, size_t number);
+    void requireOwnFolder(const Scene&) const;
+    void removeOlder() const;
+    void goOn(double time);
+    PieceFile describe(const Piece&, size_t number) const;
+    PieceFile put(Piece, size_t number);
     void writeIndex();
 
     std::string path_, folder_;
@@ -53,8 +58,12 @@ private:
     std::vector<SolidSurface> surfaces_;
     std::vector<SolidPose> posed_;  // as last written
     size_t posedNumber_ = 0;
-    std::vector<double> times_;  // s
-    std::vector<MomentFile> files_;
+    double interval_;  // s
+    std::vector<IndexEntry> entries_;
+    double lastTime_ = -1;
+    // The index is written at most once a second: it grows, and is written whole.
+    using Clock = std::chrono::steady_clock;
+    Clock::time_point indexed_{};
     Beside beside_;
 };
 

@@ -72,6 +72,14 @@ EglContext::EglContext(int cudaDevice) {
                 "no off-screen OpenGL 4.5 through EGL: install libegl-mesa0 and libgl1-mesa-dri");
 }
 
+void EglContext::makeCurrent() {
+    if (!eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_))
+        throw Error(Failure::NoDisplay, "pictures are being drawn on another thread; wait for it");
+}
+void EglContext::release() {
+    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+}
+
 EglContext::~EglContext() {
     eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     eglDestroyContext(display_, context_);

@@ -11,6 +11,9 @@ public:
     explicit EglContext(int cudaDevice = hostMemory);
     ~EglContext();
     EglContext(const EglContext&) = delete;
+    // Of this thread from now on, or of none, so that another thread can take it.
+    void makeCurrent();
+    void release();
     EglContext& operator=(const EglContext&) = delete;
 
 private:

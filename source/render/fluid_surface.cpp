@@ -73,10 +73,10 @@ void FluidSurface::draw(const Framebuffer& target, GLuint vertices, int count, G
 }
 
 void FluidSurface::findDistances(GLuint vertices, int count) {
-    const float none = 0, farthest = 1;
+    const float none[4] = {0, 0, 0, 0}, farthest = 1;
     glBindFramebuffer(GL_FRAMEBUFFER, into_[0]);
     glViewport(0, 0, divided(width_, coarser), divided(height_, coarser));
-    glClearNamedFramebufferfv(into_[0], GL_COLOR, 0, &none);
+    glClearNamedFramebufferfv(into_[0], GL_COLOR, 0, none);
     glClearNamedFramebufferfv(into_[0], GL_DEPTH, 0, &farthest);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LESS);

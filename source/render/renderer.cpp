@@ -23,7 +23,7 @@ struct FrameBlock {
     Four picture;   // width, height, samples, line width in px
     Four domain;    // size in m, step of the ground's grid
     Four particle;  // radius in m, smallest in px, px a metre at distance 1, fluids
-    Four color;     // lowest value, 1 / span, row of the table, 1 = plain
+    Four color;  // lowest value, 1 / span, row of the table; 1 = plain, 2 = plain in two dimensions
 };
 
 struct Segment {
@@ -171,7 +171,8 @@ void Renderer::uploadFrame(const DrawSettings& s) {
         {0.5f * s.diameter, 0.5f * s.minimumPixels, 0.5f * float(height()) / tangent,
          float(s.fluidCount)},
         {s.rangeMin, span > 0 ? 1 / span : 0,
-         s.swatches.empty() ? float(s.map) : float(colorMapCount), s.plain ? 1.0f : 0.0f},
+         s.swatches.empty() ? float(s.map) : float(colorMapCount),
+         s.plain ? (s.flat ? 2.0f : 1.0f) : 0.0f},
     };
     glNamedBufferSubData(frame_, 0, sizeof block, &block);
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, frame_);

@@ -34,6 +34,7 @@ struct DrawSettings {
     float diameter = 0.02f;
     float minimumPixels = 0;  // particles are never drawn smaller than this
     bool surface = false;     // of the fluid instead of its particles
+    bool flat = false;        // fluid is one layer of particles
     bool plain = false;       // one colour instead of the table
     ColorMap map = ColorMap::Viridis;
     std::vector<Swatch>

@@ -129,12 +129,16 @@ TEST_F(Surfaces, GoIntoEveryFormat) {
 }
 
 TEST_F(Surfaces, MistakesAreNamed) {
-    write("one.csv", "x,y,z\n0,0,0\n");
+    write("one.csv", "x,y,z\n0,0,0\n0,0,1\n");
     ball("ball.csv");
     expectMistake("surface nowhere.csv", Exit::Scene, "nowhere.csv");
     expectMistake("surface one.csv", Exit::Usage, "give --spacing");
     expectMistake("surface ball.csv --out ball.stl", Exit::Usage, "take ply, obj or vdb");
     expectMistake("surface ball.csv --format png", Exit::Usage, "take ply, obj or vdb");
+    expectMistake("surface ball.csv --format ply --out x.obj", Exit::Usage, "x.obj is no ply");
+    expectMistake("surface ball.csv one.csv --out x.obj", Exit::Usage, "name a folder");
+    lattice("flat.csv", [](double, double, double z) { return z < dx; });
+    expectMistake("surface flat.csv", Exit::Usage, "lie in a plane");
     fs::create_directory(folder_ / "other");
     fs::copy(folder_ / "ball.csv", folder_ / "other" / "ball.csv");
     expectMistake("surface ball.csv other/ball.csv --out all", Exit::Usage, "would become");

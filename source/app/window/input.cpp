@@ -108,6 +108,12 @@ void changeSpeed(Ui& ui, float factor) {
     ui.say(fmt::format("plays at {:.3g} x real time, if it can", speed));
 }
 
+void changeStyle(Ui& ui) {
+    DrawStyle& style = ui.player.scene.view.style;
+    style = style == DrawStyle::Surface ? DrawStyle::Spheres : DrawStyle::Surface;
+    ui.stale = true;
+}
+
 // While the program asks whether to leave.
 void answer(Ui& ui, SDL_Keycode key) {
     if (key == SDLK_RETURN || key == SDLK_y || key == SDLK_q) ui.quit = true;
@@ -155,12 +161,10 @@ void pressKey(Ui& ui, SDL_Keycode key) {
             ui.screenshot = true;
             break;
         case SDLK_s:
-            if (ui.held & KMOD_CTRL) {
+            if (ui.held & KMOD_CTRL)
                 ui.saveCheckpoint();
-                break;
-            }
-            view.style = view.style == DrawStyle::Surface ? DrawStyle::Spheres : DrawStyle::Surface;
-            ui.stale = true;
+            else
+                changeStyle(ui);
             break;
         case SDLK_z:
             if (ui.held & KMOD_CTRL) ui.undo();

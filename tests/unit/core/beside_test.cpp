@@ -47,14 +47,19 @@ TEST(Beside, LetsTheCallerGoOnUntilTooMuchIsUndone) {
     EXPECT_EQ(added, 20);
 }
 
-TEST(Beside, TellsTroubleOnce) {
+// An index must not name a file that could not be written.
+TEST(Beside, DoesNothingAfterTrouble) {
+    std::atomic<bool> go = false, done = false;
     Beside beside;
-    beside.add([] { throw std::runtime_error("the disk is full"); });
-    EXPECT_THROW(beside.wait(), std::runtime_error);
-    bool done = false;
+    beside.add([&] {
+        while (!go) std::this_thread::sleep_for(1ms);
+        throw std::runtime_error("the disk is full");
+    });
     beside.add([&] { done = true; });
-    beside.wait();
-    EXPECT_TRUE(done) << "what comes later is done";
+    go = true;
+    EXPECT_THROW(beside.wait(), std::runtime_error);
+    EXPECT_THROW(beside.add([&] { done = true; }), std::runtime_error);
+    EXPECT_FALSE(done);
 }
 
 }  // namespace
