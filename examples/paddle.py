@@ -12,7 +12,7 @@ run = spindrift.Run({
     "simulation": {"spacing": 0.03},
     "domain": {"max": [2, 0.8, 0.3]},
     "solids": [{"name": "paddle", "shape": "block", "min": [0.1, 0.05, 0], "max": [0.2, 0.7, 0.3]}],
-    "fluid": {"bodies": [{"shape": "block", "min": [0.2, 0, 0], "max": [2, 0.3, 0.3]}]},
+    "fluid": {"bodies": [{"shape": "block", "min": [0, 0, 0], "max": [2, 0.3, 0.3]}]},
     "output": {"probes": [{"kind": "height", "name": "gauge", "position": [1.5, 0, 0.15]}]},
 })
 home = run.solids()["paddle"]["position"]
