@@ -15,6 +15,10 @@ namespace spindrift {
 namespace {
 
 void spacing(Scene& s, int n) { s.simulation.spacing = 1.0f / float(n); }
+void solveForPressures(Scene& s) {
+    s.simulation.formulation = Formulation::Incompressible;
+    s.time.integrator = Integrator::SymplecticEuler, s.time.cfl = 0.4f;
+}
 
 }  // namespace
 
@@ -283,6 +287,24 @@ std::vector<ValidationCase> validationCases(const std::string& data) {
          {40, 80, 160},
          {},
          [](Scene& s, int n) { s.simulation.spacing = 0.3f / float(n); },
+         [data](const Scene& s, ValidationRun& r) { runImpact(s, r, data); }},
+        {"dam_break_front_incompressible",
+         "Dam-break front, incompressible",
+         "dam_break_front",
+         "Martin and Moyce 1952, a = 2.25 in",
+         "a / dx",
+         {20, 40, 80},
+         {},
+         [=](Scene& s, int n) { spacing(s, n), solveForPressures(s); },
+         [data](const Scene& s, ValidationRun& r) { runFront(s, r, data); }},
+        {"dam_break_pressure_incompressible",
+         "Dam-break pressures, incompressible",
+         "dam_break_pressure",
+         "Lobovsky et al. 2014",
+         "H / dx",
+         {40, 80, 160},
+         {},
+         [=](Scene& s, int n) { s.simulation.spacing = 0.3f / float(n), solveForPressures(s); },
          [data](const Scene& s, ValidationRun& r) { runImpact(s, r, data); }},
         {"kleefsman",
          "Dam break with a box, three dimensions",
