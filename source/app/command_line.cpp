@@ -9,6 +9,7 @@
 #include "app/local_bench.h"
 #include "app/real_time_bench.h"
 #include "app/explain.h"
+#include "app/fluid_mesh.h"
 #include "app/headless.h"
 #include "app/scene_choice.h"
 #include "app/stress.h"
@@ -16,6 +17,7 @@
 #include "app/validate.h"
 #include "core/error.h"
 #include "core/output_file.h"
+#include "core/system.h"
 #include "scene/json.h"
 #ifdef SPINDRIFT_WINDOW
 #include "app/window/window.h"
@@ -419,7 +421,10 @@ int runCommandLine(int argc, const char* const* argv) {
     if (*benchCommand) return runBench(benchmark);
     if (*stressCommand) return stress(stressOptions);
     if (*validateCommand) return validate(validation);
-    if (*surfaceCommand) return makeSurfaces(surfaces);
+    if (*surfaceCommand) {
+        if (!canMeshFluid()) os::becomeNeighbour("spindrift-surface", const_cast<char**>(argv));
+        return makeSurfaces(surfaces);
+    }
     if (*schemaCommand) writeText("-", asMarkdown ? knobReference() : jsonSchema());
     return int(Exit::Ok);
 }

@@ -11,6 +11,8 @@
 
 namespace spindrift {
 
+bool canMeshFluid() { return true; }
+
 struct FluidLevelSet::Grid {
     openvdb::FloatGrid::Ptr distances;
 };

@@ -17,13 +17,16 @@ struct FluidMesh {
     double volume = 0;                              // m^3, enclosed
 };
 
+// Whether this program can; spindrift-surface can.
+bool canMeshFluid();
+
 // How far places are from the fluid's surface. Particles are smoothed spheres (Zhu & Bridson 2005),
 // so that flat fluid has a flat surface and drops are round; where it lies exactly is chosen so
 // that it encloses the fluid's volume.
 class FluidLevelSet {
 public:
     // `spacing` of the particles, m; `cell` of the grid, in spacings; how often the distances are
-    // averaged with their neighbours. Throws Error (Usage) where this build has no OpenVDB.
+    // averaged with their neighbours. Throws Error (Usage) where this program has no OpenVDB.
     FluidLevelSet(const std::vector<Vec3d>& particles, double spacing, double cell, int smoothings);
     ~FluidLevelSet();
     // Closed, and of this volume, m^3, as far as a shift of less than half a spacing reaches.

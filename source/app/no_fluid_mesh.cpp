@@ -4,12 +4,14 @@
 
 namespace spindrift {
 
+bool canMeshFluid() { return false; }
+
 struct FluidLevelSet::Grid {};
 
 FluidLevelSet::FluidLevelSet(const std::vector<Vec3d>&, double, double, int) {
     throw Error(Failure::Usage,
-                "surface: this build has no OpenVDB; install it (apt-get install libopenvdb-dev) "
-                "and build anew");
+                "surface: there is no spindrift-surface beside this program; `make build` makes it "
+                "where OpenVDB is (apt-get install libopenvdb-dev)");
 }
 FluidLevelSet::~FluidLevelSet() = default;
 FluidMesh FluidLevelSet::mesh(double, double&) const { return {}; }

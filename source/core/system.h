@@ -15,6 +15,9 @@ int processId();
 bool errorsGoToTerminal();
 // Starts the program anew with a variable of the environment set; returns where that fails.
 void restartWith(const char* variable, const char* value, char** arguments);
+// Becomes another program of the folder that this one is in, with the same arguments; returns where
+// there is none.
+void becomeNeighbour(const char* name, char** arguments);
 // Which signal asked for an end while one of these lives, 0: none. A second one kills as usual, and
 // a reader that is gone is an error of the output, not the end without the other outputs.
 class StopSignals {

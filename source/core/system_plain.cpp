@@ -83,6 +83,7 @@ void OutFile::close() {
     handle_ = None;
 }
 
+void becomeNeighbour(const char*, char**) {}
 bool ReadingProgram::start(const std::vector<std::string>&) { return errno = ENOSYS, false; }
 int ReadingProgram::finish() { return -1; }
 

@@ -35,6 +35,12 @@ void restartWith(const char* variable, const char* value, char** arguments) {
     if (!none) execv(self.c_str(), arguments);
 }
 
+void becomeNeighbour(const char* name, char** arguments) {
+    std::error_code none;
+    const fs::path self = fs::read_symlink("/proc/self/exe", none);
+    if (!none) execv((self.parent_path() / name).c_str(), arguments);
+}
+
 namespace {
 volatile std::sig_atomic_t stopSignal = 0;
 std::array<struct sigaction, 3> before;
