@@ -257,6 +257,27 @@ TEST_F(Series, KeepsTheTimesOfTheRunBefore) {
     for (size_t k = 0; k < found.size(); ++k) EXPECT_NEAR(found[k], wanted[k], 1e-6);
 }
 
+// A run in trouble goes back, and its moments with it.
+TEST_F(Series, GoesBackWithTheRun) {
+    const Outcome outcome = call(
+        "test/ball_drop_small --headless --threads 2 --quiet --steps 1500 --set "
+        "time.mode=fixed --set time.step=0.02 --fps 100 --series run.pvd");
+    EXPECT_EQ(outcome.code, 0) << outcome.text;
+    EXPECT_NE(outcome.text.find("back to step 0"), std::string::npos) << outcome.text;
+    const std::string text = slurp(folder_ / "run.pvd");
+    const std::regex entry("timestep=\"([^\"]*)\"");
+    double last = -1;
+    size_t moments = 0;
+    for (std::sregex_iterator a(text.begin(), text.end(), entry), end; a != end; ++a, ++moments) {
+        EXPECT_GT(std::stod((*a)[1]), last);
+        last = std::stod((*a)[1]);
+    }
+    EXPECT_GT(moments, 50u);
+    EXPECT_EQ(named("run.pvd", "vtp").size(), moments);
+    const ReadPiece first = readVtp(folder_ / "run" / "fluid_00000.vtp");
+    for (const double speed : first.fields.at("velocity")) EXPECT_EQ(speed, 0);
+}
+
 // A shorter run leaves nothing of a longer one of the same name.
 TEST_F(Series, TakesTheFilesOfAnOlderRunAway) {
     ASSERT_EQ(call(run_ + "--time 0.04 --series run.csv").code, 0);
