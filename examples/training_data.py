@@ -1,5 +1,5 @@
-"""Training data for a network that learns how fluid moves: places and velocities of the particles of
-some random drops, picture by picture, as one compressed file of NumPy's.
+"""Training data for a network that learns how fluid moves: places and velocities of the particles
+of some random drops, picture by picture, as one compressed file of NumPy's.
 
     PYTHONPATH=build/python python3 examples/training_data.py drops.npz
 """

@@ -10,8 +10,7 @@ layout(location = 1) flat out vec2 sphere;  // distance of its middle, radius, m
 void main() {
     vec4 place = frame.view * vec4(vertex.xyz, 1.0);
     float radius = 1.5 * frame.particle.x, distance = -place.z;
-    float at = clamp((vertex.w - frame.color.x) * frame.color.y, 0.0, 1.0);
-    vec3 color = texelFetch(tables, ivec2(at * 255.0 + 0.5, int(frame.color.z)), 0).rgb;
+    vec3 color = tableColor(tables, vertex.w);
     tint = color * color;
     sphere = vec2(distance, radius);
     gl_Position = frame.projection * vec4(place.xy, min(place.z + radius, -1e-6), 1.0);

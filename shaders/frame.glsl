@@ -8,7 +8,21 @@ layout(std140, binding = 0) uniform Frame {
     vec4 picture;                   // width, height, samples, line width in px
     vec4 domain;                    // size in m, step of the ground's grid (0 = no ground)
     vec4 particle;                  // radius in m, smallest in px, px a metre at distance 1, fluids
-    vec4 color;                     // lowest value, 1 / span, row of the table; 1 = plain, 2 = plain in two dimensions
+    // Lowest value, 1 / span, row of the table; 1 = plain, 2 = plain in two dimensions.
+    vec4 color;
 } frame;
+
+// The colour of a value.
+vec3 tableColor(sampler2D tables, float value) {
+    float at = clamp((value - frame.color.x) * frame.color.y, 0.0, 1.0);
+    return texelFetch(tables, ivec2(at * 255.0 + 0.5, int(frame.color.z)), 0).rgb;
+}
+
+// What is seen at `at`, 0 to 1 from the lower left, and so far from the eye's plane: in the
+// camera's axes.
+vec3 placeAt(vec2 at, float distance) {
+    vec2 edge = vec2(1.0 / frame.projection[0][0], 1.0 / frame.projection[1][1]);
+    return vec3((2.0 * at - 1.0) * edge * distance, -distance);
+}
 
 const int tileSize = 8;   // px, see render/occlusion.h

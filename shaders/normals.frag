@@ -4,9 +4,7 @@ layout(binding = 0) uniform sampler2D distances;   // m; 0: no fluid
 layout(location = 0) out vec4 result;
 
 vec3 placeOf(ivec2 texel, float distance) {
-    vec2 at = (vec2(texel) + 0.5) / vec2(textureSize(distances, 0));
-    vec2 edge = vec2(1.0 / frame.projection[0][0], 1.0 / frame.projection[1][1]);
-    return vec3((2.0 * at - 1.0) * edge * distance, -distance);
+    return placeAt((vec2(texel) + 0.5) / vec2(textureSize(distances, 0)), distance);
 }
 
 // The difference to whichever neighbour is nearer in depth: over edges there is no slope.

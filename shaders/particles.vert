@@ -8,11 +8,6 @@ layout(location = 0) uniform bool second;   // draws those that the first call, 
 layout(location = 0) flat out vec4 tint;    // linear colour, opacity
 layout(location = 1) flat out vec3 shape;   // square / sphere, its radius in px and in depth
 
-vec3 tableColor(float value) {
-    float at = clamp((value - frame.color.x) * frame.color.y, 0.0, 1.0);
-    return texelFetch(tables, ivec2(at * 255.0 + 0.5, int(frame.color.z)), 0).rgb;
-}
-
 float pixelsOf(float radius, vec4 place) { return max(radius * frame.particle.z / max(-place.z, 1e-6), frame.particle.y); }
 
 // In clip space, of the sphere's nearest point.
@@ -54,7 +49,7 @@ void main() {
     }
     float pixels = pixelsOf(radius, place);
 
-    vec3 color = frame.color.w > 0.0 ? vec3(0.25, 0.56, 0.90) : tableColor(vertex.w);
+    vec3 color = frame.color.w > 0.0 ? vec3(0.25, 0.56, 0.90) : tableColor(tables, vertex.w);
     if (wall) color = elastic ? vec3(0.78, 0.45, 0.36) : vec3(0.46, 0.49, 0.55);
     tint = vec4(color * color, elastic ? 0.45 : wall && !solid ? 0.4 : 1.0);
 

@@ -5,12 +5,6 @@ layout(binding = 2) uniform sampler2D tints;       // times their weights, their
 layout(binding = 3) uniform sampler2D behind;
 layout(location = 0) out vec4 result;
 
-// In the camera's axes.
-vec3 placeAt(vec2 at, float distance) {
-    vec2 edge = vec2(1.0 / frame.projection[0][0], 1.0 / frame.projection[1][1]);
-    return vec3((2.0 * at - 1.0) * edge * distance, -distance);
-}
-
 // Of four neighbours the mean normal and distance, and how much of them is fluid. Of an edge within
 // the fluid the nearer side.
 struct Seen {

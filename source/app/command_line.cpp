@@ -284,8 +284,8 @@ CLI::App* addBench(CLI::App& app, BenchChoice& choice) {
     command->add_flag("--frames", choice.byFrames,
                       "pictures of up to 200 thousand particles instead, drawn off screen");
     command->add_flag("--real-time", choice.byRealTime,
-                      "simulated time per time of the shipped scenes instead, as they are and "
-                      "incompressible; six minutes");
+                      "simulated time per time of the shipped scenes instead, incompressible "
+                      "and not; six minutes");
     command->add_flag(
         "--ceilings", choice.byCeilings,
         "what the passes make of the machine's arithmetic and memory instead; a minute");

@@ -162,7 +162,8 @@ public:
             progress_.clear();
             tryTo([&] { series_->finish(); });
             tryTo([&] { keepLastGood(); });
-            tryTo([&] { finishBeside(); });
+            if (particles_) tryTo([&] { particles_->finish(); });
+            if (film_) tryTo([&] { film_->finish(); });
             throw;
         }
         if (trouble_.empty() && os::StopSignals::received() != 0) {
@@ -184,11 +185,6 @@ private:
         try {
             f();
         } catch (const Error&) {}
-    }
-    // What is written beside the run.
-    void finishBeside() {
-        if (particles_) particles_->finish();
-        if (film_) film_->finish();
     }
     bool done() const {
         const double time = asWritten(scene_.output.time);
@@ -297,7 +293,7 @@ private:
             recorders_.push_back({frame, after(first_ > 0 ? now_.time : -1, frame),
                                   [this] { addToFilm(); }, [](double) {}});
         if (particles_)
-            recorders_.push_back({frame, after(particles_->lastTime(), frame),
+            recorders_.push_back({frame, after(particles_->endBefore(), frame),
                                   [this] { particles_->add(*simulation_, now_.time); },
                                   [this](double time) { particles_->dropAfter(time); }});
         const double checkpoint = asWritten(output.checkpointEvery);
@@ -384,7 +380,8 @@ private:
             saveParticles(output.particles, simulation_->particles(),
                           massesToSave(scene_, *simulation_), fluidsToSave(scene_, *simulation_));
         if (!output.screenshot.empty()) pictures_->save(*simulation_, scene_, output.screenshot);
-        finishBeside();
+        if (particles_) particles_->finish();
+        if (film_) film_->finish();
         if (!quiet_)
             summarise();
         else if (!isInvalid())

@@ -79,10 +79,10 @@ ParticleSeries::ParticleSeries(const Scene& scene, Simulation& simulation,
 void ParticleSeries::goOn(double time) {
     entries_ = format_.readIndex(path_);
     std::erase_if(entries_, [&](const IndexEntry& e) { return e.time > time; });
-    if (!entries_.empty()) lastTime_ = entries_.back().time;
+    if (!entries_.empty()) endBefore_ = entries_.back().time;
     const auto last = size_t(time / interval_);
     if (!format_.hasIndex() && fs::exists(fileOf("fluid", last)))
-        lastTime_ = double(last) * interval_;
+        endBefore_ = double(last) * interval_;
 }
 
 // What the scene begins with must not be written over.
@@ -191,13 +191,11 @@ void ParticleSeries::add(Simulation& simulation, double time) {
         const std::vector<SolidPose> poses = simulation.solidPoses();
         const bool stayed = posed_.size() == poses.size() &&
                             std::equal(poses.begin(), poses.end(), posed_.begin(), isSamePose);
-        if (!stayed) posed_ = poses, posedNumber_ = number;
-        pieces.push_back(stayed ? describe(solidsAt(poses), posedNumber_)
-                                : put(solidsAt(poses), number));
+        if (!stayed) posed_ = poses, posedFile_ = put(solidsAt(poses), number);
+        pieces.push_back(posedFile_);
     }
     if (!objects_.empty()) pieces.push_back(put(objectsOf(simulation.state()), number));
     entries_.push_back(format_.entry(time, pieces));
-    lastTime_ = time;
     const auto now = Clock::now();
     if (now - indexed_ >= std::chrono::seconds(1)) indexed_ = now, writeIndex();
 }
@@ -214,7 +212,6 @@ void ParticleSeries::writeIndex() {
 
 void ParticleSeries::dropAfter(double time) {
     std::erase_if(entries_, [&](const IndexEntry& e) { return e.time > time; });
-    lastTime_ = entries_.empty() ? -1 : entries_.back().time;
     posed_.clear();
     writeIndex();
 }

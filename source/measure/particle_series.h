@@ -33,7 +33,7 @@ public:
     void dropAfter(double time);
     void finish();
     size_t moments() const { return entries_.size(); }
-    double lastTime() const { return lastTime_; }  // s, of the last one that is there; -1: none
+    double endBefore() const { return endBefore_; }  // s, of the run before; -1: it has none
 
 private:
     bool hasSolids() const { return !surfaces_.empty() && format_.takesTriangles(); }
@@ -56,11 +56,11 @@ private:
     std::vector<int32_t> fluids_;   // entries of fluid.bodies, by id; empty: one for all
     std::vector<int32_t> objects_;  // of each object's particle, in their order
     std::vector<SolidSurface> surfaces_;
-    std::vector<SolidPose> posed_;  // as last written
-    size_t posedNumber_ = 0;
-    double interval_;  // s
+    std::vector<SolidPose> posed_;  // as last written,
+    PieceFile posedFile_;           // where
+    double interval_;               // s
     std::vector<IndexEntry> entries_;
-    double lastTime_ = -1;
+    double endBefore_ = -1;
     // The index is written at most once a second: it grows, and is written whole.
     using Clock = std::chrono::steady_clock;
     Clock::time_point indexed_{};
