@@ -54,27 +54,31 @@ int64_t wallLayers(const Scene& scene, int axis) {
     return boundaryLayers(scene);
 }
 
-// The lattice whose outer layers are boundary particles. Default: it continues the fluid's lattice,
-// the first layer half a spacing outside each face. Classic: 2G points an edge at 0.999 i L/(2G-1),
-// G = ceil(L/R) rounded as the original's floats do.
-Lattice wallLattice(const Scene& scene) {
-    Lattice lattice{};
-    const Vec3d size = scene.domain.size(), step = wallStep(scene);
-    const float R = supportRadius(scene);
-    for (int k = 0; k < 3; ++k) {
-        if (factsOf(scene).isHistorical) {
-            const float side = scene.domain.max[k] - scene.domain.min[k];
-            lattice.n[k] = std::max<int64_t>(2, planes(2 * double(std::ceil(side / R))));
-            lattice.step[k] = 0.999 * size[k] / double(lattice.n[k] - 1);
-        } else {
-            const int64_t inside =
-                flat(scene, k) ? 1 : std::max<int64_t>(1, planes(std::round(size[k] / step[k])));
-            lattice.step[k] = flat(scene, k) ? size[k] : step[k];
-            lattice.n[k] = inside + 2 * wallLayers(scene, k);
-            lattice.first[k] = (0.5 - double(wallLayers(scene, k))) * lattice.step[k];
-        }
+// Across an axis, of which the outer ones hold boundary particles. Default: they continue the
+// fluid's lattice, the first layer half a spacing outside each face. Classic: 2G points an edge at
+// 0.999 i L/(2G-1), G = ceil(L/R) rounded as the original's floats do.
+std::vector<double> wallPlanes(const Scene& scene, int axis) {
+    const double size = scene.domain.size()[axis];
+    if (flat(scene, axis)) return {0.5 * size};
+    std::vector<double> at;
+    auto add = [&](double first, int64_t count, double step) {
+        for (int64_t i = 0; i < count; ++i) at.push_back(first + double(i) * step);
+    };
+    if (factsOf(scene).isHistorical) {
+        const float side = scene.domain.max[axis] - scene.domain.min[axis];
+        const int64_t n =
+            std::max<int64_t>(2, planes(2 * double(std::ceil(side / supportRadius(scene)))));
+        add(0, n, 0.999 * size / double(n - 1));
+        return at;
     }
-    return lattice;
+    const std::vector<WallCells> cells = wallCells(scene, axis);
+    const int64_t layers = wallLayers(scene, axis);
+    for (size_t i = 0; i < cells.size(); ++i) {
+        const int64_t below = i == 0 ? layers : 0, above = i + 1 == cells.size() ? layers : 0;
+        add(cells[i].low + (0.5 - double(below)) * cells[i].step, below + cells[i].count + above,
+            cells[i].step);
+    }
+    return at;
 }
 
 }  // namespace
@@ -143,26 +147,28 @@ bool crowds(const Body& body, const Lattice& l, Vec3d origin, Vec3d p) {
 int64_t Shell::count() const {
     int64_t all = 1, inner = 1;
     for (int k = 0; k < 3; ++k) {
-        all *= lattice.n[k];
-        inner *= std::max<int64_t>(0, lattice.n[k] - 2 * layers[k]);
+        all *= size(k);
+        inner *= std::max<int64_t>(0, size(k) - 2 * layers[k]);
     }
     return all - inner;
 }
 
 Shell wallShell(const Scene& scene) {
-    return {wallLattice(scene), {wallLayers(scene, 0), wallLayers(scene, 1), wallLayers(scene, 2)}};
+    return {{wallPlanes(scene, 0), wallPlanes(scene, 1), wallPlanes(scene, 2)},
+            {wallLayers(scene, 0), wallLayers(scene, 1), wallLayers(scene, 2)}};
 }
 
 void placeShell(const Shell& shell, std::vector<Vec3>& out) {
-    const Lattice& l = shell.lattice;
     out.reserve(size_t(shell.count()));
-    for (int64_t k = 0; k < l.n[2]; ++k)
-        for (int64_t j = 0; j < l.n[1]; ++j)
-            for (int64_t i = 0; i < l.n[0]; ++i) {
+    for (int64_t k = 0; k < shell.size(2); ++k)
+        for (int64_t j = 0; j < shell.size(1); ++j)
+            for (int64_t i = 0; i < shell.size(0); ++i) {
                 if (shell.contains(i, 0) || shell.contains(j, 1) || shell.contains(k, 2))
-                    out.push_back(toFloat(l.at(i, j, k)));
+                    out.push_back(
+                        toFloat(Vec3d{shell.planes[0][size_t(i)], shell.planes[1][size_t(j)],
+                                      shell.planes[2][size_t(k)]}));
                 else
-                    i = l.n[0] - shell.layers[0] - 1;  // on to the far face
+                    i = shell.size(0) - shell.layers[0] - 1;  // on to the far face
             }
 }
 

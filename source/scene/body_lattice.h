@@ -36,13 +36,14 @@ bool contains(const Body&, const Lattice&, Vec3d origin, Vec3d p);
 // in the first steps, faster than a first-order integrator follows.
 bool crowds(const Body&, const Lattice&, Vec3d origin, Vec3d p);
 
-// The points of a lattice that are not in its inside.
+// The points between planes across each axis that are not in their inside.
 struct Shell {
-    Lattice lattice;
+    std::vector<double> planes[3];  // m, relative to domain.min
     int64_t layers[3];
     int64_t count() const;
+    int64_t size(int axis) const { return int64_t(planes[axis].size()); }
     bool contains(int64_t i, int axis) const {
-        return i < layers[axis] || i >= lattice.n[axis] - layers[axis];
+        return i < layers[axis] || i >= size(axis) - layers[axis];
     }
 };
 // The boundary particles of the domain's walls.

@@ -14,10 +14,33 @@ constexpr double Whole = 1e-3, Squeeze = 0.02;
 
 double halfSpacing(const Scene& scene) { return 0.5 * double(scene.simulation.spacing); }
 
-bool touchesAnother(const Scene& scene, const Body& body) {
-    return std::any_of(scene.fluid.bodies.begin(), scene.fluid.bodies.end(), [&](const Body& b) {
-        return &b != &body && isBox(b) && isBox(body) && meet(scene, b, body);
+// Whether a block stands between two bodies that meet, across all of where they do.
+bool isParted(const Scene& scene, const Body& a, const Body& b) {
+    const double near = halfSpacing(scene);
+    return std::any_of(scene.solids.begin(), scene.solids.end(), [&](const Solid& solid) {
+        if (!isFace(solid) || !meet(scene, solid, a) || !meet(scene, solid, b)) return false;
+        int open = 0;  // axes along which they meet beside it
+        for (int k = 0; k < scene.simulation.dimensions; ++k) {
+            const Interval s = extentAlong(scene, solid, k), i = extentAlong(scene, a, k),
+                           j = extentAlong(scene, b, k);
+            open +=
+                s.low > std::max(i.low, j.low) + near || s.high < std::min(i.high, j.high) - near;
+        }
+        return open == 0;
     });
+}
+
+// The bodies whose lattice goes on in this one's: those that it touches, and those that they do.
+std::vector<const Body*> groupOf(const Scene& scene, const Body& body) {
+    std::vector<const Body*> group = {&body};
+    for (size_t i = 0; i < group.size(); ++i)
+        for (const Body& b : scene.fluid.bodies) {
+            const Body& a = *group[i];
+            if (isBox(a) && isBox(b) && meet(scene, a, b) && !isParted(scene, a, b) &&
+                std::find(group.begin(), group.end(), &b) == group.end())
+                group.push_back(&b);
+        }
+    return group;
 }
 
 // Whether a wall or a solid across all of a body is at its far end.
@@ -125,14 +148,13 @@ Layers layersOf(const Scene& scene, const Body& body, int axis, double s) {
     auto counted = [](double n) { return int64_t(std::clamp(n, 0.0, 2e6)); };
     const Layers own{body.min[axis], counted(std::round(at.length() / s)), s};
     if (!isFitted(scene)) return own;
-    if (!touchesAnother(scene, body))
-        return isBounded(scene, body, axis) ? loosened(own, at.length()) : own;
+    const std::vector<const Body*> group = groupOf(scene, body);
+    if (group.size() == 1) return isBounded(scene, body, axis) ? loosened(own, at.length()) : own;
     // Whole multiples lie where they are written.
     double origin = 1e300;
     bool whole = true;
-    for (const Body& b : scene.fluid.bodies) {
-        if (!isBox(b) || !touchesAnother(scene, b)) continue;
-        const Interval i = extentAlong(scene, b, axis);
+    for (const Body* b : group) {
+        const Interval i = extentAlong(scene, *b, axis);
         origin = std::min(origin, i.low), whole = whole && isWhole(i.length() / dx);
     }
     if (whole) return own;

@@ -132,6 +132,31 @@ double packedSide(const Scene& scene) {
     return dx * std::pow(count / whole, 1.0 / scene.simulation.dimensions);
 }
 
+// What blocks that stand on a wall take of it along an axis.
+struct Foot {
+    Interval at;
+    bool spans;  // all of the wall, across the axis
+};
+std::vector<Foot> feetAlong(const Scene& scene, int axis) {
+    const double near = 0.25 * double(scene.simulation.spacing);
+    const Vec3d size = scene.domain.size();
+    std::vector<Foot> feet;
+    for (const Solid& solid : scene.solids) {
+        if (!isFace(solid)) continue;
+        int stands = 0, open = 0;
+        for (int k = 0; k < scene.simulation.dimensions; ++k) {
+            const Interval s = extentAlong(scene, solid, k);
+            const int ends = (s.low < near) + (s.high > size[k] - near);
+            if (k != axis) stands += ends > 0 && !scene.domain.periodic(k), open += ends < 2;
+        }
+        if (stands > 0) feet.push_back({extentAlong(scene, solid, axis), open <= 1});
+    }
+    return feet;
+}
+
+// Counts beyond this stay here, so that a product of three fits in 64 bits.
+constexpr double MaxPlanes = 2e6;
+
 }  // namespace
 
 Vec3d latticeStep(const Scene& scene) {
@@ -154,11 +179,42 @@ Vec3d latticeStep(const Scene& scene) {
     return step;
 }
 
+std::vector<WallCells> wallCells(const Scene& scene, int axis) {
+    const double size = scene.domain.size()[axis], step = latticeStep(scene)[axis],
+                 near = 0.25 * double(scene.simulation.spacing);
+    auto divide = [](double low, double high, double count) -> WallCells {
+        return {low, int64_t(std::min(count, MaxPlanes)), (high - low) / std::max(count, 1.0)};
+    };
+    const WallCells all = divide(0, size, std::max(1.0, std::round(size / step)));
+    const std::vector<Foot> feet = feetAlong(scene, axis);
+    std::vector<double> faces = {0, size};
+    for (const Foot& foot : feet)
+        for (const double face : {foot.at.low, foot.at.high})
+            if (face > near && face < size - near) faces.push_back(face);
+    std::sort(faces.begin(), faces.end());
+    if (std::all_of(faces.begin(), faces.end(), [&](double f) { return isWhole(f / all.step); }))
+        return {all};
+    std::vector<WallCells> cells;
+    for (size_t i = 0; i + 1 < faces.size(); ++i) {
+        const double low = faces[i], high = faces[i + 1], n = (high - low) / step;
+        const bool isUnder = std::any_of(feet.begin(), feet.end(), [&](const Foot& foot) {
+            return foot.spans && foot.at.low < low + near && foot.at.high > high - near;
+        });
+        // A cell in part under a thin block would be seen as far as its middle is from the face.
+        const double count = isUnder && n < 4 ? std::floor(n + 0.02) : std::round(n);
+        if (count > 0) cells.push_back(divide(low, high, count));
+    }
+    return cells.empty() ? std::vector<WallCells>{all} : cells;
+}
+
 Vec3d wallStep(const Scene& scene) {
-    const Vec3d size = scene.domain.size();
     Vec3d step = latticeStep(scene);
-    for (int k = 0; k < scene.simulation.dimensions; ++k)
-        step[k] = size[k] / std::max(1.0, std::round(size[k] / step[k]));
+    for (int k = 0; k < scene.simulation.dimensions; ++k) {
+        double length = 0, count = 0;
+        for (const WallCells& cells : wallCells(scene, k))
+            length += double(cells.count) * cells.step, count += double(cells.count);
+        step[k] = length / count;
+    }
     return step;
 }
 

@@ -78,15 +78,17 @@ private:
                            2 * half[axis] > scene_.domain.size()[axis] - 0.25 * dx_;
         return {count, spans ? 0 : layers_, 2 * half[axis] / count};
     }
-    // A plate's own lattice, once for each side, and beyond it layers like the fluid's.
+    // Layers like the fluid's, once for each side: what of them is in the plate, and what is
+    // beyond.
     void addFaces() {
-        const Vec3d half = halfExtent(solid_);
-        const int axis = thinAxis(scene_, half);
-        const Cells across = cellsAlong(axis, half);
-        for (int i = 0; i < across.count; ++i)
-            addLayer(axis, (i + 0.5) * across.step, across.step, true);
-        for (double depth = thickness_ + 0.5 * dx_; depth < (layers_ + 1e-3) * dx_; depth += dx_)
-            addLayer(axis, depth, dx_, false);
+        const int axis = thinAxis(scene_, halfExtent(solid_));
+        const double cells = thickness_ / dx_;
+        for (int i = 0; i < std::max(double(layers_), cells - 0.01); ++i) {
+            const double share = std::clamp(cells - i, 0.0, 1.0);
+            if (share > 0.01) addLayer(axis, (i + 0.5) * dx_, share * dx_, true);
+            if (share < 0.99 && i < layers_)
+                addLayer(axis, (i + 0.5) * dx_, (1 - share) * dx_, false);
+        }
     }
     void addLayer(int axis, double depth, double width, bool inPlate) {
         const Vec3d half = halfExtent(solid_);

@@ -127,5 +127,61 @@ TEST(Solids, AreLiftedByTheWeightOfTheirWater) {
     EXPECT_NEAR(square / (weight * 0.04), 1, 0.02);
 }
 
+// A dam bears the levels on its sides to where it stands on floor and walls: what stands in them
+// behind its faces is the dam's, as far as fluid presses along the wall.
+TEST(Solids, BearWhatPressesTheirFeet) {
+    constexpr double Dx = 0.02, Rho = 1000, G = 9.81, Deep = 0.4, Shallow = 0.2, Wide = 0.2;
+    for (const std::string formulation : {"delta_sph", "delta_plus"})
+        for (const std::string motion : {"", R"(,"keyframes":[[0,0,0,0],[1,0.005,0,0]])"}) {
+            SCOPED_TRACE(testing::Message() << formulation << motion);
+            Scene scene;
+            for (const std::string& knob :
+                 {"simulation.formulation=" + formulation, std::string("simulation.spacing=0.02"),
+                  std::string("fluid.artificial_viscosity=0.1"),
+                  std::string("domain.max=0.48,0.5,0.2"),
+                  R"(solids=[{"shape":"block","min":[0.2,0,0],"max":[0.28,0.5,0.2])" + motion +
+                      "}]",
+                  std::string(R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.2,0.4,0.2],
+                      "pressure":"hydrostatic"},{"shape":"block","min":[0.28,0,0],
+                      "max":[0.48,0.2,0.2],"pressure":"hydrostatic"}])")})
+                setKnob(scene, knob);
+            auto simulation = makeSimulation(scene);
+            double sum = 0;
+            int looks = 0;
+            while (simulation->clock().time < 0.6) {
+                simulation->step(20);
+                if (simulation->clock().time < 0.3) continue;
+                const Measurement now = simulation->measure();
+                const double left = now.solids[0].position.x - 2 * Dx, right = left + 4 * Dx,
+                             deep = Deep * 0.2 / left, shallow = Shallow * 0.2 / (0.48 - right);
+                sum += now.solids[0].pressureForce.x /
+                       (Rho * G * Wide * (deep * deep - shallow * shallow) / 2);
+                ++looks;
+            }
+            EXPECT_NEAR(sum / looks, 1, 0.03);
+        }
+}
+
+// And along the wall alone: a block under water is pressed down by what is above it.
+TEST(Solids, BearOnlyWhatIsAboveThem) {
+    constexpr double Rho = 1000, G = 9.81, Above = 0.16, Side = 0.16;
+    Scene scene;
+    for (const char* knob :
+         {"simulation.formulation=delta_sph", "simulation.spacing=0.04", "domain.max=0.4,0.5,0.4",
+          "simulation.gravity_ramp=0.3", "fluid.artificial_viscosity=0.1",
+          R"(solids=[{"shape":"block","min":[0.12,0,0.12],"max":[0.28,0.16,0.28]}])",
+          R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.4,0.32,0.4]}])"})
+        setKnob(scene, knob);
+    auto simulation = makeSimulation(scene);
+    double sum = 0;
+    int looks = 0;
+    while (simulation->clock().time < 1) {
+        simulation->step(20);
+        if (simulation->clock().time < 0.6) continue;
+        sum += simulation->measure().solids[0].pressureForce.y, ++looks;
+    }
+    EXPECT_NEAR(sum / looks / (-Rho * G * Above * Side * Side), 1, 0.03);
+}
+
 }  // namespace
 }  // namespace spindrift

@@ -82,13 +82,12 @@ Means watch(const Scene& scene, double thickness) {
     return m;
 }
 
-// Plates of a quarter of a spacing miss the three per cent in some cases (note 042).
-double limitOf(double spacings) { return spacings < 0.5 ? 0.06 : 0.03; }
+constexpr double Limit = 0.03;
 
-void expectLevels(const Means& m, double limit) {
-    EXPECT_NEAR(m.force / m.exact, 1, limit) << m.force << " N/m, exact " << m.exact;
-    EXPECT_NEAR(m.left / (Rho * G * 0.4), 0, limit);
-    EXPECT_NEAR(m.right / (Rho * G * 0.4), 0, limit);
+void expectLevels(const Means& m) {
+    EXPECT_NEAR(m.force / m.exact, 1, Limit) << m.force << " N/m, exact " << m.exact;
+    EXPECT_NEAR(m.left / (Rho * G * 0.4), 0, Limit);
+    EXPECT_NEAR(m.right / (Rho * G * 0.4), 0, Limit);
 }
 
 TEST(ThinSolids, BearTheLevelsOnTheirSides) {
@@ -96,7 +95,7 @@ TEST(ThinSolids, BearTheLevelsOnTheirSides) {
         for (const double spacings : {0.25, 0.6, 1.0, 1.5, 2.0, 3.0}) {
             SCOPED_TRACE(testing::Message() << formulation << " " << spacings);
             const double thickness = spacings * Dx;
-            expectLevels(watch(twoLevels(thickness, formulation), thickness), limitOf(spacings));
+            expectLevels(watch(twoLevels(thickness, formulation), thickness));
         }
 }
 
@@ -109,7 +108,7 @@ TEST(ThinSolids, BearThemInThreeDimensions) {
             scene.simulation.dimensions = 3;
             Means m = watch(scene, thickness);
             m.force /= double(scene.domain.max.z);
-            expectLevels(m, limitOf(spacings));
+            expectLevels(m);
         }
 }
 
@@ -120,8 +119,7 @@ TEST(ThinSolids, BearThemWhileTheyMove) {
             const double thickness = spacings * Dx;
             expectLevels(
                 watch(twoLevels(thickness, formulation, R"(,"keyframes":[[0,0,0,0],[1,0.01,0,0]])"),
-                      thickness),
-                limitOf(spacings));
+                      thickness));
         }
 }
 
@@ -179,7 +177,7 @@ TEST(ThinSolids, SpanPeriodicAxes) {
             for (const Particle& p : simulation->particles())
                 EXPECT_FALSE(p.position.y > low + 1e-4 && p.position.y < high - 1e-4);
             EXPECT_LT(energy / looks, 0.1);  // J/m
-            EXPECT_NEAR(force / looks / (Rho * G * 0.2 * 0.3), -1, limitOf(spacings));
+            EXPECT_NEAR(force / looks / (Rho * G * 0.2 * 0.3), -1, Limit);
         }
 }
 
@@ -225,9 +223,9 @@ TEST(ThinSolids, CupsHoldWater) {
                                   (0.6 - (high - low) - 2 * t);  // above the cup's underside
             const double side = Rho * G * (deep * deep - around * around) / 2,
                          down = Rho * G * (deep * (high - low) - around * (high - low + 2 * t));
-            EXPECT_NEAR(sum[0].x / side, -1, limitOf(spacings));
-            EXPECT_NEAR(sum[1].x / side, 1, limitOf(spacings));
-            EXPECT_NEAR((sum[0].y + sum[1].y + sum[2].y) / down, -1, limitOf(spacings));
+            EXPECT_NEAR(sum[0].x / side, -1, Limit);
+            EXPECT_NEAR(sum[1].x / side, 1, Limit);
+            EXPECT_NEAR((sum[0].y + sum[1].y + sum[2].y) / down, -1, Limit);
         }
 }
 

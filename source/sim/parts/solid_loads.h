@@ -30,28 +30,34 @@ public:
     void reserve(int slots) {
         for (auto* field : {&pressure_, &other_, &seen_, &seenAtRest_})
             field->resize(vectorSize(slots));
+        foot_.resize(slots);
         gap_.resize(1), around_.resize(1);
     }
-    // `bodies`: of those that float.
-    void find(const WallsAtHome& home, const RigidBody* bodies) {
+    // `bodies`: of those that float. With their feet in the domain's walls, or without.
+    void find(const WallsAtHome& home, const RigidBody* bodies, bool withFeet) {
         const View v = flow_.view();
         reserve(v.walls.slots);
-        (this->*compute_)(v, home);
+        bearers_ = {home, withFeet ? foot_.data() : nullptr};
+        if (withFeet)
+            flow_.device.forEach(
+                v.walls.slots,
+                FindFeet{v, home, bodies, real(flow_.scene.simulation.spacing), foot_.data()});
+        (this->*compute_)(v);
         for (int s = 0; s < v.solidCount; ++s)
             if (flow_.scene.solids[size_t(s)].floats())
                 pressFromGaps(
                     {v, home, bodies, s, field(pressure_), field(seen_), field(seenAtRest_)});
     }
-    SumSolidLoad sumOf(const View& v, const WallsAtHome& home, int solid) {
-        return {v, field(pressure_), field(other_), home, solid};
+    SumSolidLoad sumOf(const View& v, int solid) {
+        return {v, field(pressure_), field(other_), bearers_, solid};
     }
 
 private:
     static VectorField field(const Buffer<real, Device>& b) { return VectorField{b.data()}; }
-    template <class Pass> void compute(const View& v, const WallsAtHome& home) {
+    template <class Pass> void compute(const View& v) {
         flow_.device.forEach(v.walls.slots,
                              Pass{v, Pass::Parameters::of(flow_.model), field(pressure_),
-                                  field(other_), field(seen_), field(seenAtRest_), home});
+                                  field(other_), field(seen_), field(seenAtRest_), bearers_});
     }
     void pressFromGaps(const BesideGround& beside) {
         const int slots = beside.v.walls.slots;
@@ -61,7 +67,9 @@ private:
     }
 
     Flow<Device>& flow_;
-    void (SolidLoads::*compute_)(const View&, const WallsAtHome&) = nullptr;
+    void (SolidLoads::*compute_)(const View&) = nullptr;
+    Bearers bearers_{};
+    Buffer<int, Device> foot_{flow_.device};
     Buffer<real, Device> pressure_{flow_.device}, other_{flow_.device}, seen_{flow_.device},
         seenAtRest_{flow_.device};
     Buffer<Gap, Device> gap_{flow_.device};

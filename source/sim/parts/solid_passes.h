@@ -129,13 +129,6 @@ struct WallsAtHome {
     Vector<real> size;     // m, the domain's
     VectorField face;      // m, of thin solids: from a particle's face to it, in their own axes
     HD int solidOf(int id) const { return solid ? solid[id - firstId] : -1; }
-    // Whether a cluster has any particle of a solid.
-    HD bool hasSolid(const Particles& walls, int cluster) const {
-        for (int k = 0; k < clusterSize; ++k)
-            if (const int id = walls.id[cluster * clusterSize + k]; id >= 0 && solidOf(id) >= 0)
-                return true;
-        return false;
-    }
 };
 
 // Boundary particles go with their solids. Their order is that of the last sort.

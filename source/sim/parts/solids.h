@@ -161,15 +161,16 @@ public:
         device_.forEach(count_, MeasureTurn{states_.data(), flow_.clock.data()});
     }
 
-    // What fluid does to each of their particles, and the sum over those of one solid.
-    void findLoads() { loads_.find(home(), bodies_); }
+    // What fluid does to each of their particles, and the sum over those of one solid. What floats
+    // moves by its own particles' loads, what is told has those of its feet too.
+    void findLoads(bool withFeet = false) { loads_.find(home(), bodies_, withFeet); }
     // A recorded step can't make room.
     void reserveLoads() { loads_.reserve(flow_.walls.slots()); }
-    SumSolidLoad sumOf(const View& v, int solid) { return loads_.sumOf(v, home(), solid); }
+    SumSolidLoad sumOf(const View& v, int solid) { return loads_.sumOf(v, solid); }
     // Each where the fluid is since the last step, and what fluid does to it.
     std::vector<SolidMeasurement> measure() {
         if (moves_) placeNow();
-        if (count_ > 0) findLoads();
+        if (count_ > 0) findLoads(true);
         const View v = flow_.view();
         const std::vector<SolidState> states = states_.download();
         const double mass = particleMass(flow_.scene);
