@@ -192,8 +192,11 @@ std::vector<WallCells> wallCells(const Scene& scene, int axis) {
         for (const double face : {foot.at.low, foot.at.high})
             if (face > near && face < size - near) faces.push_back(face);
     std::sort(faces.begin(), faces.end());
-    if (std::all_of(faces.begin(), faces.end(), [&](double f) { return isWhole(f / all.step); }))
+    // What is packed has no layers that would meet a face.
+    if (scene.simulation.placement == StartPlaces::Relaxed ||
+        std::all_of(faces.begin(), faces.end(), [&](double f) { return isWhole(f / all.step); }))
         return {all};
+    constexpr double Most = 0.03;  // that cells may be off: all have one mass
     std::vector<WallCells> cells;
     for (size_t i = 0; i + 1 < faces.size(); ++i) {
         const double low = faces[i], high = faces[i + 1], n = (high - low) / step;
@@ -202,6 +205,7 @@ std::vector<WallCells> wallCells(const Scene& scene, int axis) {
         });
         // A cell in part under a thin block would be seen as far as its middle is from the face.
         const double count = isUnder && n < 4 ? std::floor(n + 0.02) : std::round(n);
+        if (!isUnder && count > 0 && std::abs(n / count - 1) > Most) return {all};
         if (count > 0) cells.push_back(divide(low, high, count));
     }
     return cells.empty() ? std::vector<WallCells>{all} : cells;

@@ -125,6 +125,54 @@ TEST(Fitting, PoolsOfTwoBodiesAreStill) {
         }
 }
 
+// Each on its own side of a shelf that parts them, wherever that is: the first layer of the upper
+// one lies half a step above the shelf, the last of the lower one not nearer to it than that.
+TEST(Fitting, BodiesThatAShelfPartsMeetItsFaces) {
+    for (int part = 0; part < 20; ++part)
+        for (const double thick : {0.25, 1.0, 2.5, 4.0}) {
+            SCOPED_TRACE(testing::Message() << "part " << part << ", " << thick);
+            const double low = 6 + 0.05 * part, high = low + thick;
+            Scene scene = poolOf(2, 12, 30, 1, {"simulation.formulation=delta_sph"});
+            scene.solids.resize(1);
+            static_cast<Form&>(scene.solids[0]) = block(0, low, 12, high);
+            scene.fluid.bodies = {block(0, 0, 12, low), block(0, high, 12, high + 8)};
+            double above = 1e30, below = 0;
+            for (const Vec3& p : placeParticles(scene).positions) {
+                const double y = double(p.y) / double(Spacing);
+                if (y > low + 0.5 * thick)
+                    above = std::min(above, y - high);
+                else
+                    below = std::max(below, y);
+            }
+            const double step = latticeStep(scene).y / double(Spacing);
+            EXPECT_NEAR(above, 0.5 * step, 1e-3);
+            EXPECT_LT(below, low - 0.5 * step + 1e-3);
+        }
+}
+
+// The floor's cells meet what stands on it, wherever that is, if whole layers fit beside it.
+TEST(Fitting, FloorsMeetTheFacesOfWhatStandsOnThem) {
+    for (int part = 0; part < 20; ++part)
+        for (const double thick : {0.25, 1.0, 2.5, 6.0}) {
+            SCOPED_TRACE(testing::Message() << "part " << part << ", " << thick);
+            const double step = 1 + 0.0025 * part, face = 8 * step, back = face + thick;
+            Scene scene = poolOf(2, back + face, 12, 1, {});
+            scene.solids.resize(1);
+            static_cast<Form&>(scene.solids[0]) = block(face, 0, back, 10);
+            scene.fluid.bodies = {block(0, 0, face, 8), block(back, 0, back + face, 8)};
+            const Placement placed = placeParticles(scene);
+            double before = 1e30, behind = 1e30;  // from the faces to the cells beside them
+            for (size_t i = size_t(placed.solidSizes[0]); i < placed.walls.size(); ++i) {
+                const double x = double(placed.walls[i].x) / double(Spacing);
+                if (placed.walls[i].y > 0 || placed.walls[i].y < -Spacing) continue;
+                if (x < face + 0.1) before = std::min(before, face - x);
+                if (x > back - 0.1) behind = std::min(behind, x - back);
+            }
+            EXPECT_NEAR(before, 0.5 * step, 1e-3);
+            EXPECT_NEAR(behind, 0.5 * step, 1e-3);
+        }
+}
+
 // Up to a solid's face, also where the body goes on into the solid.
 TEST(Fitting, PoolsBesideASolidAreStill) {
     for (const std::string formulation : {"wcsph", "delta_sph"})
