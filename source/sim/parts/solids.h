@@ -82,6 +82,7 @@ public:
     }
     // The walls' particles: weighed, and put in order for good where they never move.
     void weighWalls() {
+        if (anyTurned()) placeWalls(flow_.view());
         flow_.search.sortWalls(flow_.walls);
         flow_.search.amongWalls(flow_.walls, supportRadius(flow_.scene), [&] {
             withCompiledKernel(flow_.scene.simulation.kernel, [&](auto kernel) {
@@ -226,6 +227,11 @@ private:
         if (!flow_.wallsCarryPressure() || !carriesDensity(flow_.scene))
             return "no divergence is asked for at walls";
         return moves_ || letsSlip(flow_.scene) ? "" : "no solid moves, and no wall lets slip";
+    }
+    bool anyTurned() const {
+        const std::vector<Solid>& solids = flow_.scene.solids;
+        return std::any_of(solids.begin(), solids.end(),
+                           [](const Solid& s) { return s.turn != 0; });
     }
     bool wallsMove() const {
         return moves_ || (flow_.wallCount > 0 && flow_.scene.walls.movingFace != Face::None);
