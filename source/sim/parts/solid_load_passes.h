@@ -7,8 +7,9 @@
 
 namespace spindrift::LANES {
 
-// What fluid does to solids' particles: the terms of ComputeForces with their signs changed. m/s²
-// per fluid particle's mass; of pressure, and of the others.
+// What fluid does to solids' particles, `ofAll` to those of the domain's walls too: the terms of
+// ComputeForces with their signs changed. m/s² per fluid particle's mass; of pressure, and of the
+// others.
 template <class Kernel, class Terms> struct ComputeWallLoads;
 template <class Kernel, class... Terms> struct ComputeWallLoads<Kernel, TermList<Terms...>> {
     using Index = ICluster;
@@ -22,8 +23,9 @@ template <class Kernel, class... Terms> struct ComputeWallLoads<Kernel, TermList
     // it is none at the boundary particle.
     VectorField seen, seenAtRest;
     WallsAtHome home;
+    bool ofAll;
     HD void operator()(ICluster b) const {
-        if (!home.hasSolid(v.walls, firstOf(b) / clusterSize)) return;
+        if (!ofAll && !home.hasSolid(v.walls, firstOf(b) / clusterSize)) return;
         Wall<R> wall = loadWall<needs>(v.walls, b);
         Acceleration<R> a{};
         const Vector<R> x = load(v.walls.position, b);
@@ -69,6 +71,41 @@ struct SumSolidLoad {
         const Vector<real> arm = imageOf(v.c, load(v.walls.position, i) - v.solids[solid].middle);
         const Vector<real> torque = cross(arm, p + o);
         sum.add({{p.x, p.y, p.z}, {o.x, o.y, o.z}, {torque.x, torque.y, torque.z}});
+    }
+};
+
+// The same over the particles of each face of the domain: x_min, x_max, y_min, ...
+struct FaceLoads {
+    double pressure[6][3] = {}, other[6][3] = {};
+    HD_OUT void add(const FaceLoads& o) {
+        for (int face = 0; face < 6; ++face)
+            for (int k = 0; k < 3; ++k)
+                pressure[face][k] += o.pressure[face][k], other[face][k] += o.other[face][k];
+    }
+};
+// A particle in an edge belongs to more than one face: what acts across one of them is that face's,
+// what acts along all of them is shared.
+struct SumFaceLoads {
+    View v;
+    VectorField pressure, other;
+    WallsAtHome home;
+    HD void addTo(FaceLoads& sum, int i) const {
+        if (v.walls.id[i] < 0 || home.solidOf(v.walls.id[i]) >= 0) return;
+        const Vector<real> x = load(v.walls.position, i), p = load(pressure, i), o = load(other, i);
+        const double of[3][2] = {{p.x, o.x}, {p.y, o.y}, {p.z, o.z}};
+        const int face[3] = {faceBeyond(0, x.x, home.size.x), faceBeyond(1, x.y, home.size.y),
+                             faceBeyond(2, x.z, home.size.z)};
+        const int faces = (face[0] >= 0) + (face[1] >= 0) + (face[2] >= 0);
+        for (int k = 0; k < 3; ++k)
+            for (int at = 0; at < 3; ++at) {
+                if (face[at] < 0 || (face[k] >= 0 && at != k)) continue;
+                const double share = face[k] >= 0 ? 1 : 1.0 / faces;
+                sum.pressure[face[at]][k] += share * of[k][0];
+                sum.other[face[at]][k] += share * of[k][1];
+            }
+    }
+    HD static int faceBeyond(int axis, real at, real size) {
+        return at < 0 ? 2 * axis : at > size ? 2 * axis + 1 : -1;
     }
 };
 

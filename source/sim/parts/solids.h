@@ -18,6 +18,8 @@
 
 namespace spindrift::LANES {
 
+inline constexpr const char* faceNames[] = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
+
 // Owns the solids and what their particles and those of the domain's walls have from the start.
 template <class Device> class Solids : public Part {
 public:
@@ -166,27 +168,36 @@ public:
     void findLoads() { loads_.find(home(), bodies_); }
     // A recorded step can't make room.
     void reserveLoads() { loads_.reserve(flow_.walls.slots()); }
+    SumWallPower findPower(bool isViscous, bool isArtificial, ScalarField noPressure) {
+        return loads_.findPower(home(), isViscous, isArtificial, noPressure);
+    }
     SumSolidLoad sumOf(const View& v, int solid) { return loads_.sumOf(v, home(), solid); }
-    // Each where the fluid is since the last step, and what fluid does to it.
-    std::vector<SolidMeasurement> measure() {
+    // Each where the fluid is since the last step, and what fluid does to it; and to the faces.
+    void measure(Measurement& m) {
         if (moves_) placeNow();
-        if (count_ > 0) findLoads();
+        const bool ofFaces = flow_.scene.output.faceForces;
+        if (count_ > 0 || ofFaces) findLoads();
         const View v = flow_.view();
         const std::vector<SolidState> states = states_.download();
         const double mass = particleMass(flow_.scene);
         auto scaled = [&](const double* a) { return mass * Vec3d{a[0], a[1], a[2]}; };
-        std::vector<SolidMeasurement> out;
         for (int s = 0; s < count_; ++s) {
             const SolidLoad load =
                 device_.template sum<SolidLoad>(flow_.walls.slots(), sumOf(v, s));
             const SolidState& state = states[size_t(s)];
             const std::string& name = flow_.scene.solids[size_t(s)].name;
-            out.push_back({name.empty() ? "solid" + std::to_string(s) : name,
-                           toVec3d(state.middle) + toDouble(flow_.scene.domain.min),
-                           toVec3d(state.velocity), toVec3d(state.spin), scaled(load.pressure),
-                           scaled(load.other), scaled(load.torque)});
+            m.solids.push_back({name.empty() ? "solid" + std::to_string(s) : name,
+                                toVec3d(state.middle) + toDouble(flow_.scene.domain.min),
+                                toVec3d(state.velocity), toVec3d(state.spin), scaled(load.pressure),
+                                scaled(load.other), scaled(load.torque)});
         }
-        return out;
+        if (!ofFaces) return;
+        const FaceLoads loads =
+            device_.template sum<FaceLoads>(flow_.walls.slots(), loads_.sumOfFaces(v, home()));
+        for (int face = 0; face < 2 * flow_.scene.simulation.dimensions; ++face)
+            if (!flow_.scene.domain.periodic(face / 2))
+                m.faces.push_back(
+                    {faceNames[face], scaled(loads.pressure[face]), scaled(loads.other[face])});
     }
     std::vector<SolidPose> poses() {
         if (moves_) placeNow();
