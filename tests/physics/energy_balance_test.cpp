@@ -53,7 +53,7 @@ Scene dam(const std::string& formulation, const std::vector<std::string>& knobs 
 
 TEST(EnergyBalance, WhatVorticesLoseIsDissipated) {
     for (const char* formulation : {"transport_velocity", "delta_plus", "delta_sph"})
-        for (const double dx : {0.04, 0.025, 0.0125}) {
+        for (const double dx : {0.04, 0.025, 0.02}) {
             SCOPED_TRACE(testing::Message() << formulation << " " << dx);
             auto simulation = makeSimulation(
                 validation("taylor_green", {std::string("simulation.formulation=") + formulation,
@@ -83,11 +83,6 @@ TEST(EnergyBalance, ADiscThatTurnsAsASolidKeepsAllIt) {
                                         to("simulation.spacing", dx)}));
             const Measurement start = simulation->measure(), end = after(*simulation, 0.5);
             const double exact = std::numbers::pi / 2, K = start.kineticEnergy;
-            std::printf("%s %g: L %.5f kept %.2e visc %.2e shift %.2e unexplained %.2e\n",
-                        formulation, dx, start.angularMomentum.z / exact,
-                        end.angularMomentum.z / start.angularMomentum.z - 1,
-                        end.energy->viscosity / K, end.energy->shifting / K,
-                        end.energy->unexplained / K);
             EXPECT_NEAR(start.angularMomentum.z / exact, 1, 0.015);  // as the lattice fits the disc
             EXPECT_NEAR(end.angularMomentum.z / start.angularMomentum.z, 1, gained * dx);
             EXPECT_NEAR(end.energy->viscosity / K, 0, 1e-3);
@@ -111,7 +106,6 @@ TEST(EnergyBalance, OfADamThatBreaksCloses) {
             if (k > 2) worst = std::max(worst, std::abs(m.energy->unexplained) / given);
             EXPECT_NEAR(m.energy->gravityWork / given, 1, 0.04) << "shifting moves particles, too";
         }
-        std::printf("%s: worst %.3f %%\n", formulation, 100 * worst);
         EXPECT_LT(worst, 0.005);
     }
 }
@@ -126,7 +120,6 @@ TEST(EnergyBalance, WhatNoTermExplainsIsSaid) {
         const double start = simulation->measure().potentialEnergy;
         const Measurement m = after(*simulation, 0.5);
         const double share = m.energy->unexplained / (start - m.potentialEnergy);
-        std::printf("%s: %.2f %%\n", formulation, 100 * share);
         EXPECT_LT(std::abs(share), most) << formulation;
     }
 }
@@ -190,8 +183,6 @@ TEST(EnergyBalance, SolidsThatMoveDoWork) {
         const Measurement start = simulation->measure(), m = after(*simulation, 1);
         const double there =
             m.kineticEnergy + m.potentialEnergy - start.potentialEnergy + m.energy->compression;
-        std::printf("%s: wall work %.3f there %.3f dissipated %.3f unexplained %.4f\n", formulation,
-                    m.energy->wallWork, there, dissipated(*m.energy), m.energy->unexplained);
         EXPECT_GT(m.energy->wallWork, 1);
         EXPECT_NEAR(m.energy->unexplained / m.energy->wallWork, 0, 0.02);
     }

@@ -55,10 +55,6 @@ TEST(FaceForces, OfWaterAtRestAreHydrostatic) {
                 }
                 EXPECT_EQ(mean.size(), 2u * size_t(dimensions));
                 const double weight = rho * g * H * L * D, side = rho * g * H * H / 2 * D;
-                RecordProperty("floor", std::to_string(mean["y_min"].y / -weight - 1));
-                std::printf("%s %dD %d: floor %.4f side %.4f %.4f\n", formulation, dimensions,
-                            layers, -mean["y_min"].y / weight, -mean["x_min"].x / side,
-                            mean["x_max"].x / side);
                 EXPECT_NEAR(-mean["y_min"].y / weight, 1, 0.01);
                 EXPECT_NEAR(-mean["x_min"].x / side, 1, 0.05);
                 EXPECT_NEAR(mean["x_max"].x / side, 1, 0.05);
@@ -94,8 +90,6 @@ TEST(FaceForces, AreWhatTheFluidsMomentumLoses) {
             const Vec3d lost = start.momentum + before * mass * Vec3d{0, -9.81, 0} -
                                simulation->measure().momentum;
             const double all = mass * 9.81 * before;
-            std::printf("%s %s: %.4f %.4f %.4f\n", formulation, solid, (given - lost).x / all,
-                        (given - lost).y / all, (given - lost).z / all);
             EXPECT_LT(length(given - lost), 0.01 * all);
         }
 }

@@ -246,8 +246,7 @@ private:
         add(shiftsParticles(scene_) ? "transport" : "density rate", ratePass());
     }
     void end() {
-        noteTerms(OptionalTerms{});
-        noteTerms(Mixing{});
+        noteTerms(Joined<OptionalTerms, Mixing>{});
         forEachPart(parts_, [&](auto& part) { part.collide(plan_); });
     }
 
@@ -267,10 +266,7 @@ private:
                    ? onPairsOrFluid<ComputeDensity<CubicSplineKernel, false>>
                    : onPairsOrFluid<ComputeDensity<K, false>>;
     }
-    Pass wallPass() const {
-        if (shiftsParticles(scene_)) return wallPass<true>();
-        return wallPass<false>();
-    }
+    Pass wallPass() const { return shiftsParticles(scene_) ? wallPass<true>() : wallPass<false>(); }
     template <bool dense> Pass wallPass() const {
         return flow_.fluidSticks()
                    ? &Flow<Device>::template onWalls<ExtrapolateToWalls<K, true, dense>>
