@@ -56,8 +56,8 @@ TEST(FaceForces, OfWaterAtRestAreHydrostatic) {
                 EXPECT_EQ(mean.size(), 2u * size_t(dimensions));
                 const double weight = rho * g * H * L * D, side = rho * g * H * H / 2 * D;
                 EXPECT_NEAR(-mean["y_min"].y / weight, 1, 0.01);
-                EXPECT_NEAR(-mean["x_min"].x / side, 1, 0.05);
-                EXPECT_NEAR(mean["x_max"].x / side, 1, 0.05);
+                EXPECT_NEAR(-mean["x_min"].x / side, 1, 0.02);
+                EXPECT_NEAR(mean["x_max"].x / side, 1, 0.02);
                 EXPECT_NEAR(mean["y_max"].y / weight, 0, 1e-3);
             }
 }
@@ -90,7 +90,8 @@ TEST(FaceForces, AreWhatTheFluidsMomentumLoses) {
             const Vec3d lost = start.momentum + before * mass * Vec3d{0, -9.81, 0} -
                                simulation->measure().momentum;
             const double all = mass * 9.81 * before;
-            EXPECT_LT(length(given - lost), 0.01 * all);
+            // What is stopped at the solid's surface is not told.
+            EXPECT_LT(length(given - lost), (*solid ? 0.015 : 0.01) * all);
         }
 }
 
