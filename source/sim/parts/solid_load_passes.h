@@ -74,13 +74,13 @@ struct SumSolidLoad {
     }
 };
 
-// The same over the particles of each face of the domain: x_min, x_max, y_min, ...
+// The same over the particles of the two faces across an axis.
 struct FaceLoads {
-    double pressure[6][3] = {}, other[6][3] = {};
+    double pressure[2][3] = {}, other[2][3] = {};
     HD_OUT void add(const FaceLoads& o) {
-        for (int face = 0; face < 6; ++face)
+        for (int end = 0; end < 2; ++end)
             for (int k = 0; k < 3; ++k)
-                pressure[face][k] += o.pressure[face][k], other[face][k] += o.other[face][k];
+                pressure[end][k] += o.pressure[end][k], other[end][k] += o.other[end][k];
     }
 };
 // A particle in an edge belongs to more than one face: what acts across one of them is that face's,
@@ -89,24 +89,22 @@ struct SumFaceLoads {
     View v;
     VectorField pressure, other;
     WallsAtHome home;
+    int axis;
     HD void addTo(FaceLoads& sum, int i) const {
         if (v.walls.id[i] < 0 || home.solidOf(v.walls.id[i]) >= 0) return;
         const Vector<real> x = load(v.walls.position, i), p = load(pressure, i), o = load(other, i);
         const double of[3][2] = {{p.x, o.x}, {p.y, o.y}, {p.z, o.z}};
-        const int face[3] = {faceBeyond(0, x.x, home.size.x), faceBeyond(1, x.y, home.size.y),
-                             faceBeyond(2, x.z, home.size.z)};
-        const int faces = (face[0] >= 0) + (face[1] >= 0) + (face[2] >= 0);
-        for (int k = 0; k < 3; ++k)
-            for (int at = 0; at < 3; ++at) {
-                if (face[at] < 0 || (face[k] >= 0 && at != k)) continue;
-                const double share = face[k] >= 0 ? 1 : 1.0 / faces;
-                sum.pressure[face[at]][k] += share * of[k][0];
-                sum.other[face[at]][k] += share * of[k][1];
-            }
+        const int end[3] = {endBeyond(x.x, home.size.x), endBeyond(x.y, home.size.y),
+                            endBeyond(x.z, home.size.z)};
+        if (end[axis] < 0) return;
+        const int faces = (end[0] >= 0) + (end[1] >= 0) + (end[2] >= 0);
+        for (int k = 0; k < 3; ++k) {
+            const double share = k == axis ? 1 : end[k] >= 0 ? 0 : 1.0 / faces;
+            sum.pressure[end[axis]][k] += share * of[k][0];
+            sum.other[end[axis]][k] += share * of[k][1];
+        }
     }
-    HD static int faceBeyond(int axis, real at, real size) {
-        return at < 0 ? 2 * axis : at > size ? 2 * axis + 1 : -1;
-    }
+    HD static int endBeyond(real at, real size) { return at < 0 ? 0 : at > size ? 1 : -1; }
 };
 
 // Where what floats comes near the box and other solids are gaps that no particle of fluid fits

@@ -62,8 +62,8 @@ public:
                 : isViscous   ? artificial
                               : other};
     }
-    SumFaceLoads sumOfFaces(const View& v, const WallsAtHome& home) {
-        return {v, field(pressure_), field(other_), home};
+    SumFaceLoads sumOfFaces(const View& v, const WallsAtHome& home, int axis) {
+        return {v, field(pressure_), field(other_), home, axis};
     }
     SumSolidLoad sumOf(const View& v, const WallsAtHome& home, int solid) {
         return {v, field(pressure_), field(other_), home, solid};

@@ -192,12 +192,14 @@ public:
                                 scaled(load.other), scaled(load.torque)});
         }
         if (!ofFaces) return;
-        const FaceLoads loads =
-            device_.template sum<FaceLoads>(flow_.walls.slots(), loads_.sumOfFaces(v, home()));
-        for (int face = 0; face < 2 * flow_.scene.simulation.dimensions; ++face)
-            if (!flow_.scene.domain.periodic(face / 2))
-                m.faces.push_back(
-                    {faceNames[face], scaled(loads.pressure[face]), scaled(loads.other[face])});
+        for (int axis = 0; axis < flow_.scene.simulation.dimensions; ++axis) {
+            if (flow_.scene.domain.periodic(axis)) continue;
+            const FaceLoads loads = device_.template sum<FaceLoads>(
+                flow_.walls.slots(), loads_.sumOfFaces(v, home(), axis));
+            for (int end = 0; end < 2; ++end)
+                m.faces.push_back({faceNames[2 * axis + end], scaled(loads.pressure[end]),
+                                   scaled(loads.other[end])});
+        }
     }
     std::vector<SolidPose> poses() {
         if (moves_) placeNow();
