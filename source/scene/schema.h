@@ -674,8 +674,8 @@ template <class S, class Visitor> void visitOutput(S& s, Visitor&& visit) {
     visit("output.energy_balance", o.energyBalance,
           Knob{"", 0, 0,
                "columns of the series: work done on the fluid, what each term has dissipated, "
-               "energy of compression, and what is left that nothing explains; a step takes about "
-               "twice as long",
+               "energy of compression, and what is left that nothing explains; a step takes two to "
+               "three times as long",
                Restart});
     visit("output.strict", o.strict,
           Knob{"", 0, 0, "results outside the validity of the method are an error, not a remark",
