@@ -134,6 +134,11 @@ void writeAll(hid_t file, const Scene& scene, const RunState& s,
         hdf5::writeArray(file, "broken bonds", H5T_STD_U8LE, H5T_NATIVE_UCHAR,
                          s.objects.broken.data(), {s.objects.broken.size(), 1});
     }
+    const EnergyLedger& e = s.energy;
+    if (e.begun)
+        writeNumbers(file, "energy",
+                     {e.start, e.gravity, e.walls, e.stirred, e.others, e.viscosity, e.artificial,
+                      e.diffusion, e.shifting, e.wallPressure});
     if (!curves.empty()) writeFloats(file, "curves", "", curves.data(), curves.size(), 4);
     if (!s.densities.empty())
         writeFloats(file, "densities", "kg/m³", s.densities.data(), s.densities.size(), 1);
@@ -194,6 +199,13 @@ void readSolids(hid_t file, Checkpoint& c) {
         throw Trouble{"solid motions"};
 }
 
+// Of a run that didn't ask for it there is none: it begins anew.
+void readEnergy(hid_t file, EnergyLedger& e) {
+    if (H5Aexists(file, "energy") <= 0) return;
+    const std::vector<double> n = readNumbers(file, "energy", 10);
+    e = {true, n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9]};
+}
+
 // Each particle has one of each, and all of them can be.
 void checkFluid(const Scene& scene, const RunState& state) {
     const size_t count = state.particles.positions.size();
@@ -231,6 +243,7 @@ Checkpoint readAll(hid_t file, const std::string& path) {
     c.state.particles.velocities = readVectors(file, "velocities");
     c.state.particles.walls = readVectors(file, "walls");
     readSolids(file, c);
+    readEnergy(file, c.state.energy);
     if (!c.scene.objects.empty()) readObjects(file, c);
     if (isMultiFluid(c.scene))
         c.state.particles.bodies = readArray<uint16_t>(file, "bodies", H5T_NATIVE_UINT16, 1);

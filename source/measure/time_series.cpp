@@ -73,6 +73,30 @@ constexpr SolidQuantity SolidQuantities[] = {
     {"viscous_force", "N", &SolidMeasurement::viscousForce, true},
     {"torque", "N m", &SolidMeasurement::torque, true}};
 
+struct FaceQuantity {
+    const char* name;
+    Vec3d FaceMeasurement::*of;
+};
+constexpr FaceQuantity FaceQuantities[] = {{"pressure_force", &FaceMeasurement::pressureForce},
+                                           {"viscous_force", &FaceMeasurement::viscousForce}};
+
+struct EnergyQuantity {
+    const char* name;
+    double EnergyMeasurement::*of;
+};
+constexpr EnergyQuantity EnergyQuantities[] = {
+    {"compression_energy", &EnergyMeasurement::compression},
+    {"gravity_work", &EnergyMeasurement::gravityWork},
+    {"wall_work", &EnergyMeasurement::wallWork},
+    {"stir_work", &EnergyMeasurement::stirWork},
+    {"other_work", &EnergyMeasurement::otherWork},
+    {"viscous_dissipation", &EnergyMeasurement::viscosity},
+    {"artificial_dissipation", &EnergyMeasurement::artificialViscosity},
+    {"diffusion_dissipation", &EnergyMeasurement::diffusion},
+    {"shifting_dissipation", &EnergyMeasurement::shifting},
+    {"wall_dissipation", &EnergyMeasurement::wallPressure},
+    {"unexplained_energy", &EnergyMeasurement::unexplained}};
+
 // Calls f(name, unit, value) for each column but those of passes.
 template <class F> void forValues(const Measurement& m, const F& f) {
     const auto unitOf = [&](const auto& q) {
@@ -81,6 +105,14 @@ template <class F> void forValues(const Measurement& m, const F& f) {
     for (const Quantity& q : Quantities) f(q.name, unitOf(q), q.of(m));
     if (m.solvesPressure)
         for (const Quantity& q : SolveQuantities) f(q.name, unitOf(q), q.of(m));
+    if (m.energy)
+        for (const EnergyQuantity& q : EnergyQuantities)
+            f(q.name, perDepth("J", m.dimensions), *m.energy.*q.of);
+    for (const FaceMeasurement& face : m.faces)
+        for (const FaceQuantity& q : FaceQuantities)
+            for (int k = 0; k < 3; ++k)
+                f(fmt::format("face.{}.{}_{}", face.name, q.name, "xyz"[k]),
+                  perDepth("N", m.dimensions), (face.*q.of)[k]);
     for (const SolidMeasurement& s : m.solids)
         for (const SolidQuantity& q : SolidQuantities)
             for (int k = 0; k < 3; ++k)

@@ -68,7 +68,7 @@ std::optional<double> thicknessOf(const Scene& scene, const Solid& solid, double
     const double room = 0.5 * scene.simulation.spacing;  // of a particle's middle from the wall
     std::optional<double> least;
     for (int k = 0; k < scene.simulation.dimensions; ++k) {
-        const bool between = solid.moves() || scene.domain.periodic(k) ||
+        const bool between = !solid.isAsDrawn() || scene.domain.periodic(k) ||
                              (shape.middle[k] - half[k] > double(scene.domain.min[k]) + room &&
                               shape.middle[k] + half[k] < double(scene.domain.max[k]) - room);
         if (between && (!least || 2 * half[k] < *least)) least = 2 * half[k];
@@ -103,12 +103,11 @@ Gap nearestGap(const Scene& scene, size_t index, const std::vector<Convex>& shap
     const Vec3d low = toDouble(scene.domain.min), high = toDouble(scene.domain.max);
     std::vector<double> toSolid(shapes.size(), 1e30), toWall(6, 1e30);
     for (const Vec3& at : sampleSolid(scene, scene.solids[index]).positions) {
-        const Vec3d p = toDouble(at) + low;
-        const double depth = -shapes[index].nearest(p - shapes[index].middle).distance;
+        const Vec3d p = shapes[index].turned(toDouble(at) + low);
+        const double depth = -shapes[index].nearestInSpace(p).distance;
         for (size_t s = 0; s < shapes.size(); ++s)
             if (s != index && !shapes[s].mesh)
-                toSolid[s] =
-                    std::min(toSolid[s], shapes[s].nearest(p - shapes[s].middle).distance - depth);
+                toSolid[s] = std::min(toSolid[s], shapes[s].nearestInSpace(p).distance - depth);
         for (int k = 0; k < scene.simulation.dimensions; ++k) {
             if (scene.domain.periodic(k)) continue;
             double &begin = toWall[size_t(2 * k)], &end = toWall[size_t(2 * k + 1)];

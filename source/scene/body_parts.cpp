@@ -91,7 +91,7 @@ Interval extentAlong(const Scene& scene, const Form& form, int axis) {
     return {form.min[axis] - origin, form.max[axis] - origin};
 }
 
-bool isFace(const Solid& solid) { return solid.shape == Shape::Block && !solid.moves(); }
+bool isFace(const Solid& solid) { return solid.shape == Shape::Block && solid.isAsDrawn(); }
 
 bool isBox(const Form& form) { return form.shape == Shape::Block || form.shape == Shape::Wedge; }
 

@@ -47,6 +47,7 @@ void checkPlane(const Scene& scene, const Solid& plane, size_t index) {
     const std::string path = fmt::format("solids[{}]", index);
     if (length(plane.normal) < 1e-3f)
         refuse(path + ".normal", "has no direction; name one to the side where fluid is");
+    if (plane.turn != 0) refuse(path + ".turn", "a plane is turned by its normal; set that");
     if (plane.moves())
         refuse(path,
                "a plane is without an end and does not move; leave velocity, spin and keyframes "
@@ -109,8 +110,9 @@ void checkFloating(const Scene& scene, size_t index, const std::string& path) {
     std::vector<Convex> shapes;
     for (const Solid& other : scene.solids)
         shapes.push_back(convexOf(other, scene.simulation.dimensions));
+    const Vec3d origin = toDouble(scene.domain.min);
     for (const Vec3& at : sampleSolid(scene, solid).positions) {
-        const Vec3d p = toDouble(at);
+        const Vec3d p = shapes[index].turned(toDouble(at) + origin) - origin;
         for (int k = 0; k < scene.simulation.dimensions; ++k)
             if (!scene.domain.periodic(k) && (p[k] < 0 || p[k] > size[k]))
                 refuse(path,
@@ -118,8 +120,7 @@ void checkFloating(const Scene& scene, size_t index, const std::string& path) {
                                    "xyz"[k]));
         for (size_t other = 0; other < scene.solids.size(); ++other) {
             const Convex& shape = shapes[other];
-            if (other != index &&
-                shape.nearest(p + toDouble(scene.domain.min) - shape.middle).distance < -0.5 * dx)
+            if (other != index && shape.nearestInSpace(p + origin).distance < -0.5 * dx)
                 refuse(path,
                        fmt::format("floats, and begins inside solids[{}]; move them apart", other));
         }
@@ -134,22 +135,22 @@ void checkSolid(const Scene& scene, size_t index) {
     if (solid.shape == Shape::File)
         refuse(path + ".shape", "a file is for bodies of fluid; name another shape");
     if (solid.shape == Shape::Plane) return checkPlane(scene, solid, index);
-    const Vec3d half = halfExtent(solid), middle = convexOf(solid, 3).middle;
+    const Vec3d span = halfSpan(solid), middle = convexOf(solid, 3).middle;
     bool outside = false;
     for (int k = 0; k < scene.simulation.dimensions; ++k) {
-        const double extent = 2 * half[k];
+        const double extent = 2 * halfExtent(solid)[k];
         const double least = 0.1 * double(scene.simulation.spacing);
         if (extent < least)
             refuse(path, fmt::format("{:.4g} m along {} is less than a tenth of "
                                      "simulation.spacing, {:.4g} m; thicken it",
                                      extent, "xyz"[k], least));
         if (scene.domain.periodic(k) &&
-            extent > scene.domain.max[k] - scene.domain.min[k] - 2 * supportRadius(scene))
+            2 * span[k] > scene.domain.max[k] - scene.domain.min[k] - 2 * supportRadius(scene))
             refuse(path,
                    fmt::format("leaves no room for fluid along {}, a periodic axis; shorten it",
                                "xyz"[k]));
         outside |=
-            middle[k] + half[k] < scene.domain.min[k] || middle[k] - half[k] > scene.domain.max[k];
+            middle[k] + span[k] < scene.domain.min[k] || middle[k] - span[k] > scene.domain.max[k];
     }
     if (outside && !solid.moves() && solid.shape == Shape::Mesh)
         refuseMeshPlace(scene, solid, path);
@@ -265,8 +266,7 @@ void checkApart(const Scene& scene) {
         if (!scene.solids[s].floats()) continue;
         const Convex shape = convexOf(scene.solids[s], scene.simulation.dimensions);
         for (size_t i = 0; i < sample.size(); ++i)
-            if (shape.nearest(toDouble(sample.positions[i] + scene.domain.min) - shape.middle)
-                    .distance < 0)
+            if (shape.nearestInSpace(toDouble(sample.positions[i] + scene.domain.min)).distance < 0)
                 refuse(fmt::format("objects[{}]", sample.objects[i]),
                        fmt::format("begins inside solids[{}], which floats; move them apart", s));
     }

@@ -1,6 +1,7 @@
 #include "scene/convex.h"
 
 #include <cmath>
+#include <numbers>
 
 namespace spindrift {
 
@@ -63,6 +64,29 @@ Convex convexOf(const Form& form, int dimensions) {
         c.add({-2 * half.y, half.x, 0}, ridge);
     }
     return c;
+}
+
+Convex convexOf(const Solid& solid, int dimensions) {
+    Convex c = convexOf(static_cast<const Form&>(solid), dimensions);
+    const int k = int(solid.spinAxis), y = (k + 1) % 3, z = (k + 2) % 3;
+    const double angle = double(solid.turn) * std::numbers::pi / 180;
+    c.axis[y][y] = c.axis[z][z] = std::cos(angle);
+    c.axis[y][z] = std::sin(angle), c.axis[z][y] = -c.axis[y][z];
+    return c;
+}
+
+Vec3d halfSpan(const Solid& solid) {
+    const Convex shape = convexOf(solid, 3);
+    const Vec3d half = halfExtent(solid);
+    Vec3d span;
+    for (int k = 0; k < 3; ++k)
+        for (int own = 0; own < 3; ++own) span[k] += std::abs(shape.axis[own][k]) * half[own];
+    return span;
+}
+
+Convex::Nearest Convex::nearestInSpace(Vec3d point) const {
+    const Nearest own = nearest(into(point - middle));
+    return {own.distance, out(own.normal)};
 }
 
 Convex::Nearest Convex::nearest(Vec3d p) const {

@@ -171,7 +171,9 @@ double fastest(const std::vector<MotionKey>& keys, double reach) {
 }  // namespace
 
 std::vector<MotionKey> motionOf(const Solid& solid) {
-    return keysOf(solid.keyframes, solid.velocity, solid.spin);
+    std::vector<MotionKey> keys = keysOf(solid.keyframes, solid.velocity, solid.spin);
+    for (MotionKey& key : keys) key.turn += double(solid.turn) * PerDegree;
+    return keys;
 }
 std::vector<MotionKey> motionOf(const Grip& grip) {
     return keysOf(grip.keyframes, grip.velocity, 0);

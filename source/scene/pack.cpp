@@ -15,7 +15,7 @@ namespace spindrift {
 bool relaxed(const Scene& scene) { return scene.simulation.placement == StartPlaces::Relaxed; }
 
 double distanceFrom(const Scene& scene, const Convex& shape, Vec3d p) {
-    return shape.nearest(p + toDouble(scene.domain.min) - shape.middle).distance;
+    return shape.nearestInSpace(p + toDouble(scene.domain.min)).distance;
 }
 
 std::vector<Convex> solidsOf(const Scene& scene) {
@@ -29,7 +29,7 @@ namespace {
 
 // A block that lies between planes of the lattice of each body that it is near to.
 bool meetsLayers(const Scene& scene, const Solid& solid, const std::vector<Lattice>& lattices) {
-    if (solid.shape != Shape::Block) return false;
+    if (solid.shape != Shape::Block || solid.turn != 0) return false;
     for (size_t b = 0; b < lattices.size(); ++b)
         for (int k = 0; k < scene.simulation.dimensions; ++k) {
             if (!meet(scene, solid, scene.fluid.bodies[b])) continue;
@@ -79,8 +79,11 @@ void addBoundary(const Scene& scene, Region& region) {
     const bool walls = scene.walls.kind == WallKind::Particles;
     for (const Solid& solid : scene.solids) {
         const SolidSample sample = sampleSolid(scene, solid);
+        const Convex shape = convexOf(solid, d);
+        const Vec3d origin = toDouble(scene.domain.min);
         for (size_t i = 0; i < sample.positions.size(); ++i) {
-            region.boundary.push_back(toDouble(sample.positions[i]));
+            region.boundary.push_back(shape.turned(toDouble(sample.positions[i]) + origin) -
+                                      origin);
             region.boundaryVolumes.push_back(double(sample.volumes[i]) * std::pow(dx, d));
         }
     }
@@ -109,7 +112,7 @@ void addBoundary(const Scene& scene, Region& region) {
 Vec3d outOf(const Scene& scene, const std::vector<Convex>& solids, Vec3d p) {
     const double least = 0.25 * double(scene.simulation.spacing);
     for (const Convex& s : solids) {
-        const Convex::Nearest n = s.nearest(p + toDouble(scene.domain.min) - s.middle);
+        const Convex::Nearest n = s.nearestInSpace(p + toDouble(scene.domain.min));
         if (n.distance < least) p = p + (least - n.distance) * n.normal;
     }
     return p;
@@ -152,7 +155,7 @@ double Slants::distance(Vec3d p) const {
     const double enough = 3 * reach();
     double nearest = 1e30;
     for (const Convex& s : solids_) {
-        const Vec3d x = p + toDouble(scene_.domain.min) - s.middle;
+        const Vec3d x = s.into(p + toDouble(scene_.domain.min) - s.middle);
         double beyond = -1e300;
         for (int k = 0; k < s.planes; ++k)
             beyond = std::max(beyond, dot(s.normal[k], x) - s.offset[k]);
@@ -268,6 +271,36 @@ void packBeside(const Scene& scene, const std::vector<Lattice>& lattices, const 
         packing.relax(at, 30);
     }
     for (size_t i = first; i < places.size(); ++i) places[i].at = at[i - first];
+}
+
+void relaxFrom(const Scene& scene, size_t first, std::vector<Vec3>& places) {
+    const int d = scene.simulation.dimensions;
+    const double volume = particleVolume(scene), dx = std::pow(volume, 1.0 / d);
+    Region region;
+    region.dimensions = d, region.low = {0, 0, 0}, region.high = scene.domain.size();
+    for (int k = 0; k < d; ++k) region.periodic[k] = scene.domain.periodic(k);
+    Region walls = region;
+    walls.inside = [](Vec3d, double) { return 1.0; };
+    if (!factsOf(scene).isHistorical) addBoundary(scene, walls);
+    std::vector<Vec3d> at;
+    for (const Vec3& place : places) at.push_back(toDouble(place));
+    // Of what walls and solids leave.
+    const auto fluid = densityAround(at, std::vector<double>(at.size(), volume), region, dx),
+               solid = densityAround(walls.boundary, walls.boundaryVolumes, region, dx);
+    region.inside = [fluid, solid, steepness = steepnessAtEnds(dx)](Vec3d p, double width) {
+        const double density = fluid(p) / std::max(1 - solid(p), 0.3);
+        return std::clamp(0.5 + (density - 0.5) / (steepness * width), 0.0, 1.0);
+    };
+    if (!factsOf(scene).isHistorical) addBoundary(scene, region);
+    region.boundary.insert(region.boundary.end(), at.begin(), at.begin() + long(first));
+    region.boundaryVolumes.resize(region.boundary.size(), volume);
+    region.out = [&scene, solids = solidsOf(scene)](Vec3d p) { return outOf(scene, solids, p); };
+    at.erase(at.begin(), at.begin() + long(first));
+    const std::vector<Vec3d> start = at;
+    relax(at, region, dx, scene.compute.threads);
+    // What was pushed out of a rugged surface goes back.
+    for (size_t i = 0; i < at.size(); ++i)
+        places[first + i] = toFloat(region.inside(at[i], dx) > 0 ? at[i] : start[i]);
 }
 
 void relaxPlaces(const Scene& scene, const std::vector<Lattice>& lattices, bool isCut,

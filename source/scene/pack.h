@@ -98,4 +98,9 @@ std::vector<Form> fittedBodies(const Scene&, const std::vector<Lattice>&);
 // many or too few.
 void relaxPlaces(const Scene&, const std::vector<Lattice>&, bool isCut, std::vector<Place>&);
 
+// The places of a file's particles, from `first` on, until they lie evenly between the others,
+// walls and solids, where they are: in the open they end where their density is a half. Relative to
+// domain.min.
+void relaxFrom(const Scene&, size_t first, std::vector<Vec3>&);
+
 }  // namespace spindrift

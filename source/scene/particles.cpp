@@ -67,12 +67,13 @@ void placeBody(const Scene& scene, const std::vector<Lattice>& lattices, size_t 
             }
 }
 
-// Appends the particles of a file as they are, each of its own body's fluid or of the one that it
-// names, in two dimensions in the layer of the others.
+// Appends the particles of a file, as they are or relaxed, each of its own body's fluid or of the
+// one that it names, in two dimensions in the layer of the others.
 void placeFile(const Scene& scene, size_t index, Placement& out) {
     const Body& body = scene.fluid.bodies[index];
     const ParticleTable table = readParticles(body.path);
     const Vec3d origin = toDouble(scene.domain.min);
+    const size_t first = out.positions.size();
     for (size_t i = 0; i < table.positions.size(); ++i) {
         Vec3d place = table.positions[i] - origin, velocity = table.velocities[i];
         if (flat(scene, 2)) place.z = 0.5 * scene.domain.size().z, velocity.z = 0;
@@ -81,6 +82,7 @@ void placeFile(const Scene& scene, size_t index, Placement& out) {
         out.pressures.push_back(table.pressures.empty() ? 0.0f : float(table.pressures[i]));
         out.bodies.push_back(uint16_t(table.fluids.empty() ? double(index) : table.fluids[i]));
     }
+    if (body.relax) relaxFrom(scene, first, out.positions);
     if (table.densities.empty()) return;
     out.densities.resize(out.positions.size() - table.densities.size());
     for (double rho : table.densities) out.densities.push_back(float(rho));

@@ -202,7 +202,31 @@ Share shareOutside(const Region& region, Vec3d middle, Vec3d sides) {
     return all;
 }
 
+// sum V W at a point of it, as Crowd sums.
+double sumOnLattice(int dimensions) {
+    const int deep = dimensions == 2 ? 0 : 2;
+    double sum = 0;
+    for (int x = -2; x <= 2; ++x)
+        for (int y = -2; y <= 2; ++y)
+            for (int z = -deep; z <= deep; ++z)
+                sum += weight(std::sqrt(double(x * x + y * y + z * z)) / Radius);
+    return std::pow(Radius, -dimensions) * sum;
+}
+
 }  // namespace
+
+std::function<double(Vec3d)> densityAround(const std::vector<Vec3d>& places,
+                                           const std::vector<double>& volumes, const Region& region,
+                                           double spacing) {
+    const auto crowd = std::make_shared<Crowd>(region, Radius * spacing);
+    crowd->fill(places, volumes);
+    return [crowd, lattice = sumOnLattice(region.dimensions)](Vec3d p) {
+        return crowd->sum(p) / lattice;
+    };
+}
+
+// Of Wendland's kernel, summed over planes through its middle: 5/4 in one dimension.
+double steepnessAtEnds(double spacing) { return 1.25 / (Radius * spacing); }
 
 double volumeOf(const Region& region, double spacing) {
     double cells = 0;
@@ -283,13 +307,7 @@ void Packing::relax(std::vector<Vec3d>& positions, int steps) {
 }
 
 std::vector<double> Packing::densities(const std::vector<Vec3d>& positions) {
-    const int d = region_.dimensions;
-    const double own = std::pow(Radius, -d);
-    double lattice = 0;
-    for (int x = -2; x <= 2; ++x)
-        for (int y = -2; y <= 2; ++y)
-            for (int z = d == 2 ? 0 : -2; z <= (d == 2 ? 0 : 2); ++z)
-                lattice += own * weight(std::sqrt(double(x * x + y * y + z * z)) / Radius);
+    const double lattice = sumOnLattice(region_.dimensions);
     fill(positions);
     std::vector<double> sums(positions.size());
 #pragma omp parallel for schedule(dynamic, 256) num_threads(team_)

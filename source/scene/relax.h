@@ -30,6 +30,13 @@ struct Region {
 
 double volumeOf(const Region&, double spacing);  // m^3, in two dimensions m^2
 
+// sum V W at a point, of places with those volumes: 1 on a lattice, a half at its end.
+std::function<double(Vec3d)> densityAround(const std::vector<Vec3d>& places,
+                                           const std::vector<double>& volumes, const Region&,
+                                           double spacing);
+// 1/m, how steeply that falls where a lattice ends.
+double steepnessAtEnds(double spacing);
+
 // Moves particles until they are pushed equally from all sides by each other and by what surrounds
 // the region: packing after Colagrossi, Bouscasse, Antuono & Marrone 2012 (Computer Physics
 // Communications 183, 1641), here as steps down the gradient of sum V W over the particles over

@@ -276,7 +276,7 @@ SolidSample sampleSolid(const Scene& scene, const Solid& solid) {
     auto seen = [&](Vec3d p) {  // by any fluid, ever
         for (int k = 0; k < scene.simulation.dimensions; ++k)
             if (std::max(-p[k], p[k] - size[k]) > double(supportRadius(scene)))
-                return solid.moves();
+                return !solid.isAsDrawn();
         return true;
     };
     SolidSample out;

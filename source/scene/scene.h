@@ -61,6 +61,7 @@ struct Body : Form {
     StartPressure pressure = StartPressure::None;  // where a field has its own, that is added
     std::string name{};  // of its fluid, in the legend; "" = by its density
     float mass = 0;      // kg, of a particle of a file; 0 = its column says
+    bool relax = false;  // a file's particles are pushed apart until they lie evenly
 };
 
 // Where a solid is at one time, relative to its place in the scene: s, m, degrees. Second
@@ -84,6 +85,7 @@ struct Solid : Form {
     Vec3 velocity{0, 0, 0};   // m/s
     float spin = 0;           // degrees/s
     Axis spinAxis = Axis::Z;  // through its middle; keyframes turn about it too
+    float turn = 0;           // degrees about that axis, at the start
     Keyframes keyframes;      // in the order of their times
     std::string motion;       // a CSV that becomes the keyframes when the scene is read
     float density = 0;        // kg/m³ of one that floats, 0 = it moves as prescribed
@@ -92,6 +94,8 @@ struct Solid : Form {
     float slip = 0;  // m, as of walls
     bool floats() const { return density > 0; }
     bool moves() const { return !keyframes.empty() || velocity != Vec3{} || spin != 0 || floats(); }
+    // Whether it is where its shape says, for good.
+    bool isAsDrawn() const { return !moves() && turn == 0; }
 };
 
 // An elastic object: particles on a lattice, and bonds between them that are springs. It meets
@@ -306,7 +310,9 @@ struct Output {
     std::string series;  // path: particles, solids and objects at every frame
     std::string fields = "velocity,density,pressure";  // of the particles in there
     std::string video;                                 // path: a film of the run
-    bool strict = false;  // what is outside the validity of the method is an error
+    bool strict = false;         // what is outside the validity of the method is an error
+    bool faceForces = false;     // columns of the series: what fluid does to the domain's faces
+    bool energyBalance = false;  // columns of the series: where energy comes from and goes to
     std::vector<Probe> probes;
 };
 

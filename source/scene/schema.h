@@ -133,6 +133,11 @@ void visitMember(B& b, const std::string& at, Visitor&& visit) {
               Knob{"kg", 0, 1e9f,
                    "of each particle, in two dimensions of a metre of depth; 0 = as the file says",
                    Restart});
+        visit(at + ".relax", b.relax,
+              Knob{"", 0, 0,
+                   "pushes the particles apart until they lie evenly where they are, for those of "
+                   "other programs, which may begin uneven; velocities and pressures stay",
+                   Restart});
         return;
     }
     visit(at + ".velocity", b.velocity, Knob{"m/s", -1e3f, 1e3f, "initial velocity", Restart});
@@ -167,6 +172,12 @@ void visitMember(S& s, const std::string& at, Visitor&& visit) {
     visit(at + ".spin", s.spin, Knob{"degrees/s", -1e5f, 1e5f, "turns about its middle", Restart});
     visit(at + ".spin_axis", s.spinAxis,
           Knob{"", 0, 0, "direction of the axis that it turns about", Restart});
+    if (s.shape != Shape::Plane)
+        visit(at + ".turn", s.turn,
+              Knob{"degrees", -360, 360,
+                   "how far it is turned about that axis, through its middle, at the start; "
+                   "keyframes turn it on from there",
+                   Restart});
     visit(at + ".keyframes", s.keyframes,
           Knob{"", -1e7f, 1e7f,
                "where it is when: [[t, x, y, z], ...] or [[t, x, y, z, turn], ...] in s, m and "
@@ -654,6 +665,17 @@ template <class S, class Visitor> void visitOutput(S& s, Visitor&& visit) {
           Knob{"", 0, 0,
                "film of the run, .mp4, .mkv or .webm, made by ffmpeg; output.fps frames a second "
                "of simulated time, shown 60 a second at most",
+               Restart});
+    visit("output.face_forces", o.faceForces,
+          Knob{"", 0, 0,
+               "columns of the series: the force of fluid on each face of the domain, of pressure "
+               "and of viscosity",
+               Restart});
+    visit("output.energy_balance", o.energyBalance,
+          Knob{"", 0, 0,
+               "columns of the series: work done on the fluid, what each term has dissipated, "
+               "energy of compression, and what is left that nothing explains; a step takes two to "
+               "three times as long",
                Restart});
     visit("output.strict", o.strict,
           Knob{"", 0, 0, "results outside the validity of the method are an error, not a remark",

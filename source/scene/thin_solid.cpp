@@ -57,7 +57,7 @@ private:
         const Vec3d origin = toDouble(scene_.domain.min), size = scene_.domain.size();
         Vec3d p = shape_.middle - origin + at;
         if (scene_.simulation.dimensions == 2) p.z = 0.5 * size.z;
-        for (int k = 0; k < scene_.simulation.dimensions && !solid_.moves(); ++k)
+        for (int k = 0; k < scene_.simulation.dimensions && solid_.isAsDrawn(); ++k)
             if (std::max(-p[k], p[k] - size[k]) > double(supportRadius(scene_))) return;
         out_.positions.push_back(toFloat(p)), out_.volumes.push_back(float(volume));
         out_.faces.push_back(toFloat(face)), out_.beyond.push_back(beyond);

@@ -2,6 +2,7 @@
 // What a run carries from step to step, and what its constants were derived from: another device
 // that starts from it goes on exactly.
 #include "scene/particles.h"
+#include "sim/energy_ledger.h"
 #include "sim/object_state.h"
 #include "sim/solid_motion.h"
 #include "sim/step_state.h"
@@ -19,6 +20,7 @@ struct RunState {
     std::vector<SolidMotion> solids;  // one for each, where any floats or has been dragged;
                                       // otherwise, and at the beginning, empty
     ObjectState objects;
+    EnergyLedger energy;  // where it is asked for
 
     RunState() = default;
     // The beginning of a run.

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,24 @@ struct SolidMeasurement {
     Vec3d velocity, spin;               // m/s, of its middle; rad/s
     Vec3d pressureForce, viscousForce;  // N
     Vec3d torque;                       // N m, about its middle
+};
+
+// What fluid does to a face of the domain. N, in two dimensions per metre of depth.
+struct FaceMeasurement {
+    std::string name;  // x_min, x_max, ...
+    Vec3d pressureForce, viscousForce;
+};
+
+// Where energy came from and went to since the beginning of the run, J
+// (sim/parts/energy_balance.h).
+struct EnergyMeasurement {
+    double compression = 0;  // stored now
+    // Work done on the fluid by gravity and the pull to the centre, by walls and solids that move,
+    // by the mouse, and by all other forces: resistance, mixing, surface tension, contact.
+    double gravityWork = 0, wallWork = 0, stirWork = 0, otherWork = 0;
+    // Dissipated by each; by walls: what their own pressure takes, which nothing stores.
+    double viscosity = 0, artificialViscosity = 0, diffusion = 0, shifting = 0, wallPressure = 0;
+    double unexplained = 0;  // what is there more than all that says; below 0: less
 };
 
 // Where a solid is: its middle, m from the domain's lower corner, and its axes, of length 1.
@@ -72,7 +91,9 @@ struct Measurement {
     bool solvesPressure = false;  // the formulation does, as `solve` reports
     SolveReport solve;
     std::vector<SolidMeasurement> solids;  // one for each of the scene's
-    bool finite = true;                    // no NaN or infinity in position, velocity, density
+    std::vector<FaceMeasurement> faces;    // of the domain that are walls, where they are asked for
+    std::optional<EnergyMeasurement> energy;  // where it is asked for
+    bool finite = true;                       // no NaN or infinity in position, velocity, density
 };
 
 // One particle as the picker and tests see it. Position in world coordinates.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "sim/parts/block_time_steps.h"
+#include "sim/parts/energy_balance.h"
 #include "sim/parts/floating.h"
 #include "sim/step/flow.h"
 #include "sim/particles/measure.h"
@@ -56,6 +57,7 @@ public:
         forEachPart(parts(), [&](auto& part) { part.restart(state); });
         flow_.search.outdate();
         runner_.runInitial();  // there is something to see
+        if (energy_.isOn()) energy_.begin(measureFluid(flow_));
     }
     void apply(const Scene& scene) override {
         refresh(scene);
@@ -112,7 +114,8 @@ public:
         countSteps(m, clock(), blocks_.areOn(), flow_.fluidCount);
         m.solvesPressure = factsOf(flow_.scene).solvesPressure;
         if (m.solvesPressure) m.solve = solver_.report();
-        m.solids = solids_.measure();
+        solids_.measure(m);
+        energy_.measure(m);
         return m;
     }
     StepState clock() override { return flow_.readClock(); }
@@ -157,7 +160,8 @@ private:
         if (!sound) throw Error(Failure::Usage, otherwise);
     }
     auto parts() {
-        return std::tie(tension_, mixing_, solids_, floating_, objects_, resistance_, blocks_);
+        return std::tie(tension_, mixing_, solids_, floating_, objects_, resistance_, blocks_,
+                        energy_);
     }
     void refresh(const Scene& scene) {
         const bool halfListsBefore = flow_.usesHalfLists();
@@ -207,6 +211,7 @@ private:
     Objects<Device> objects_{flow_, solids_, floating_};
     Resistance<Device> resistance_{flow_};
     BlockTimeSteps<Device> blocks_{flow_};
+    EnergyBalance<Device> energy_{flow_, solids_};
     PressureSolver<Device> solver_{flow_};
     StepRunner<Device> runner_{flow_.device, {&flow_.fluid, &flow_.walls, &objects_.surfaceSet()}};
     Buffer<Vertex, Device> staging_{flow_.device};  // for vertices that the host is to have

@@ -209,11 +209,15 @@ private:
     static SolidMotion motionAtHome(const Scene& scene, const Solid& solid, const RigidBody& body) {
         SolidMotion m;
         const SolidState home = solidAtHome(scene, solid);
-        m.centre = Vec3d{home.middle.x, home.middle.y, home.middle.z} + body.centre;
-        m.velocity = toDouble(solid.velocity);
         const int axis = int(solid.spinAxis);
-        m.angularMomentum =
-            (double(solid.spin) * std::numbers::pi / 180) * massOf(scene, solid).inertia[axis];
+        Vec3d angle;
+        angle[axis] = double(solid.turn) * std::numbers::pi / 180;
+        turnBy(m.turn, angle);
+        const Turn turn(m.turn);
+        m.centre = Vec3d{home.middle.x, home.middle.y, home.middle.z} + turn.out(body.centre);
+        m.velocity = toDouble(solid.velocity);
+        m.angularMomentum = (double(solid.spin) * std::numbers::pi / 180) *
+                            turn.out(massOf(scene, solid).inertia[axis]);
         return m;
     }
 

@@ -14,6 +14,11 @@ struct ShareOfStep {
     bool drifts;
 };
 
+// When in a step energy is looked at: around the mouse's stirring; when forces are known and have
+// not moved the fluid yet; when pressures have been solved for; and when rates of density are
+// known.
+enum class Moment { BeforeStir, Stirred, ForcesKnown, BeforeKick, PressureSolved, BeforeDrift };
+
 // What a part may answer; what it doesn't is nothing.
 struct Part {
     // Live knobs may have changed; then, how long a step (s) may be because of all parts.
@@ -38,13 +43,14 @@ struct Part {
 
     // Rows of the plan: before anything is looked for, half a step ahead or not; between order and
     // lists; on top of the forces; things that move; what rates of density ask for, by the
-    // velocities that forces have led to; and what fluid runs into.
+    // velocities that forces have led to; what fluid runs into; and what all that does to energy.
     void place(Plan&, Initial, bool /*halfWay*/) {}
     void choose(Plan&, Initial) {}
     void addForces(Plan&, Initial) {}
     void move(Plan&, ShareOfStep) {}
     void addRates(Plan&) {}
     void collide(Plan&) {}
+    void weigh(Plan&, Moment) {}
 };
 
 }  // namespace spindrift::LANES

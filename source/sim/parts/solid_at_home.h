@@ -25,8 +25,7 @@ inline SolidState solidAtHome(const Scene& scene, const Solid& solid) {
     s.grace = real(std::min(thinness(scene, solid) / 8, 0.05 * double(scene.simulation.spacing)));
     s.hides = needsScreen(scene, solid), s.plate = faceOfPlate(scene, solid);
     s.home = s.middle = s.middleBefore = toReal(middle);
-    s.axis[0] = {1, 0, 0}, s.axis[1] = {0, 1, 0}, s.axis[2] = {0, 0, 1};
-    for (int k = 0; k < 3; ++k) s.axisBefore[k] = s.axis[k];
+    for (int k = 0; k < 3; ++k) s.axis[k] = s.axisBefore[k] = toReal(shape.axis[k]);
     s.spinAxis = int(solid.spinAxis);
     s.planes = shape.planes;
     for (int k = 0; k < shape.planes; ++k)

@@ -42,6 +42,7 @@ struct FindFeet {
 struct Bearers {
     WallsAtHome home;
     const int* foot;  // as FindFeet found them; null: each solid bears its own alone
+    bool all;         // what walls bear is asked for too
     HD int of(const Particles& walls, int i) const {
         if (walls.id[i] < 0) return -1;
         const int own = home.solidOf(walls.id[i]);
@@ -56,14 +57,15 @@ struct Bearers {
                 along(force.z, x.z, home.size.z)};
     }
     HD bool any(const Particles& walls, int cluster) const {
+        if (all) return true;
         for (int k = 0; k < clusterSize; ++k)
             if (of(walls, cluster * clusterSize + k) >= 0) return true;
         return false;
     }
 };
 
-// What fluid does to solids' particles: the terms of ComputeForces with their signs changed. m/s²
-// per fluid particle's mass; of pressure, and of the others.
+// What fluid does to the particles of solids and walls: the terms of ComputeForces with their signs
+// changed. m/s² per fluid particle's mass; of pressure, and of the others.
 template <class Kernel, class Terms> struct ComputeWallLoads;
 template <class Kernel, class... Terms> struct ComputeWallLoads<Kernel, TermList<Terms...>> {
     using Index = ICluster;
@@ -126,6 +128,40 @@ struct SumSolidLoad {
         const Vector<real> torque = cross(arm, p + o);
         sum.add({{p.x, p.y, p.z}, {o.x, o.y, o.z}, {torque.x, torque.y, torque.z}});
     }
+};
+
+// The same over the particles of the two faces across an axis.
+struct FaceLoads {
+    double pressure[2][3] = {}, other[2][3] = {};
+    HD_OUT void add(const FaceLoads& o) {
+        for (int end = 0; end < 2; ++end)
+            for (int k = 0; k < 3; ++k)
+                pressure[end][k] += o.pressure[end][k], other[end][k] += o.other[end][k];
+    }
+};
+// A particle in an edge belongs to more than one face: what acts across one of them is that face's,
+// what acts along all of them is shared, but for what a solid that goes on in the wall there bears.
+struct SumFaceLoads {
+    View v;
+    VectorField pressure, other;
+    Bearers bearers;
+    int axis;
+    HD void addTo(FaceLoads& sum, int i) const {
+        if (v.walls.id[i] < 0) return;
+        const Vector<real> size = bearers.home.size, x = load(v.walls.position, i),
+                           p = load(pressure, i), o = load(other, i);
+        const double of[3][2] = {{p.x, o.x}, {p.y, o.y}, {p.z, o.z}};
+        const int end[3] = {endBeyond(x.x, size.x), endBeyond(x.y, size.y), endBeyond(x.z, size.z)};
+        if (end[axis] < 0) return;
+        const bool isBorne = bearers.of(v.walls, i) >= 0;
+        const int faces = (end[0] >= 0) + (end[1] >= 0) + (end[2] >= 0);
+        for (int k = 0; k < 3; ++k) {
+            const double share = k == axis ? 1 : end[k] >= 0 || isBorne ? 0 : 1.0 / faces;
+            sum.pressure[end[axis]][k] += share * of[k][0];
+            sum.other[end[axis]][k] += share * of[k][1];
+        }
+    }
+    HD static int endBeyond(real at, real size) { return at < 0 ? 0 : at > size ? 1 : -1; }
 };
 
 // Where what floats comes near the box and other solids are gaps that no particle of fluid fits

@@ -18,6 +18,8 @@
 
 namespace spindrift::LANES {
 
+inline constexpr const char* faceNames[] = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
+
 // Owns the solids and what their particles and those of the domain's walls have from the start.
 template <class Device> class Solids : public Part {
 public:
@@ -82,6 +84,7 @@ public:
     }
     // The walls' particles: weighed, and put in order for good where they never move.
     void weighWalls() {
+        if (anyTurned()) placeWalls(flow_.view());
         flow_.search.sortWalls(flow_.walls);
         flow_.search.amongWalls(flow_.walls, supportRadius(flow_.scene), [&] {
             withCompiledKernel(flow_.scene.simulation.kernel, [&](auto kernel) {
@@ -166,27 +169,38 @@ public:
     void findLoads(bool withFeet = false) { loads_.find(home(), bodies_, withFeet); }
     // A recorded step can't make room.
     void reserveLoads() { loads_.reserve(flow_.walls.slots()); }
+    SumWallPower findPower(bool isViscous, bool isArtificial, ScalarField noPressure) {
+        return loads_.findPower(home(), isViscous, isArtificial, noPressure);
+    }
     SumSolidLoad sumOf(const View& v, int solid) { return loads_.sumOf(v, solid); }
-    // Each where the fluid is since the last step, and what fluid does to it.
-    std::vector<SolidMeasurement> measure() {
+    // Each where the fluid is since the last step, and what fluid does to it; and to the faces.
+    void measure(Measurement& m) {
         if (moves_) placeNow();
-        if (count_ > 0) findLoads(true);
+        const bool ofFaces = flow_.scene.output.faceForces;
+        if (count_ > 0 || ofFaces) findLoads(true);
         const View v = flow_.view();
         const std::vector<SolidState> states = states_.download();
         const double mass = particleMass(flow_.scene);
         auto scaled = [&](const double* a) { return mass * Vec3d{a[0], a[1], a[2]}; };
-        std::vector<SolidMeasurement> out;
         for (int s = 0; s < count_; ++s) {
             const SolidLoad load =
                 device_.template sum<SolidLoad>(flow_.walls.slots(), sumOf(v, s));
             const SolidState& state = states[size_t(s)];
             const std::string& name = flow_.scene.solids[size_t(s)].name;
-            out.push_back({name.empty() ? "solid" + std::to_string(s) : name,
-                           toVec3d(state.middle) + toDouble(flow_.scene.domain.min),
-                           toVec3d(state.velocity), toVec3d(state.spin), scaled(load.pressure),
-                           scaled(load.other), scaled(load.torque)});
+            m.solids.push_back({name.empty() ? "solid" + std::to_string(s) : name,
+                                toVec3d(state.middle) + toDouble(flow_.scene.domain.min),
+                                toVec3d(state.velocity), toVec3d(state.spin), scaled(load.pressure),
+                                scaled(load.other), scaled(load.torque)});
         }
-        return out;
+        if (!ofFaces) return;
+        for (int axis = 0; axis < flow_.scene.simulation.dimensions; ++axis) {
+            if (flow_.scene.domain.periodic(axis)) continue;
+            const FaceLoads loads =
+                device_.template sum<FaceLoads>(flow_.walls.slots(), loads_.sumOfFaces(v, axis));
+            for (int end = 0; end < 2; ++end)
+                m.faces.push_back({faceNames[2 * axis + end], scaled(loads.pressure[end]),
+                                   scaled(loads.other[end])});
+        }
     }
     std::vector<SolidPose> poses() {
         if (moves_) placeNow();
@@ -227,6 +241,11 @@ private:
         if (!flow_.wallsCarryPressure() || !carriesDensity(flow_.scene))
             return "no divergence is asked for at walls";
         return moves_ || letsSlip(flow_.scene) ? "" : "no solid moves, and no wall lets slip";
+    }
+    bool anyTurned() const {
+        const std::vector<Solid>& solids = flow_.scene.solids;
+        return std::any_of(solids.begin(), solids.end(),
+                           [](const Solid& s) { return s.turn != 0; });
     }
     bool wallsMove() const {
         return moves_ || (flow_.wallCount > 0 && flow_.scene.walls.movingFace != Face::None);

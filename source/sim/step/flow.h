@@ -76,18 +76,19 @@ template <class Device> struct Flow {
     template <class P> void onFluid() { device.forEach(fluid.slots(), pass<P>()); }
     template <class P> void onWalls() { device.forEach(walls.slots(), pass<P>()); }
     // Of lists that hold each pair once where they do, and of all neighbours otherwise.
-    template <class P> void onPairsOrFluid() {
+    template <class P> void onPairsOrFluid() { runOnPairsOrFluid(pass<P>()); }
+    template <class P> void runOnPairsOrFluid(const P& pass) {
         if constexpr (NeighbourSearch<Device>::keepsLists)
-            if (usesHalfLists()) return search.overPairs(pass<P>());
-        onFluid<P>();
+            if (usesHalfLists()) return search.overPairs(pass);
+        device.forEach(fluid.slots(), pass);
     }
     // Of active particles; forces on solids may be asked for at any time.
     void findNeighbours() {
         using Search = NeighbourSearch<Device>;
         search.find(view(), usesHalfLists(),
-                    !wallsCarryPressure() ? Search::OfWalls::None
-                    : solidCount > 0      ? Search::OfWalls::All
-                                          : Search::OfWalls::Active);
+                    !wallsCarryPressure()                  ? Search::OfWalls::None
+                    : solidCount > 0 || asksForWallLoads() ? Search::OfWalls::All
+                                                           : Search::OfWalls::Active);
     }
     // Where all that pairs do they do to both: carried density changes at rates that differ, and a
     // limit, which the classic formulation has, is one on a part of the whole.
@@ -98,9 +99,12 @@ template <class Device> struct Flow {
     // And look for fluid. Solved pressures are mirrored instead, but solids are told what they
     // feel.
     bool wallsCarryPressure() const {
-        const bool asked = !factsOf(scene).solvesPressure || solidCount > 0 || wantsVelocities();
+        const bool asked = !factsOf(scene).solvesPressure || solidCount > 0 || wantsVelocities() ||
+                           asksForWallLoads();
         return wallCount > 0 && !factsOf(scene).isHistorical && asked;
     }
+    // Whether it is asked for what fluid does to the domain's faces.
+    bool asksForWallLoads() const { return scene.output.faceForces || scene.output.energyBalance; }
     bool fluidSticks() const { return wallsCarryPressure() && wantsVelocities(); }
     // Whether terms ask for velocities of walls that make fluid stick.
     bool wantsVelocities() const {

@@ -63,6 +63,7 @@ private:
     void symplecticEuler() {
         evaluateForces(Initial::Yes);
         chooseStep();
+        weigh(Moment::BeforeKick);
         move({2, true});
         advance<Kick, Drift>({"integrate", "kick", "drift"});
         end();
@@ -74,6 +75,7 @@ private:
         move({1, true});
         advance<HalfKick, Drift | KeepVelocity | KickOn>({"integrate", "kick", "drift"});
         evaluateForces(Initial::Yes);
+        weigh(Moment::BeforeKick);
         move({1, false});
         add("second kick", onFluid<Integrate<Resume | HalfKick>>);
         end();
@@ -86,6 +88,7 @@ private:
         chooseStep();
         advance<0, Keep | HalfDrift | KickOn>({"predict", "", "predict"});
         evaluateForces(Initial::No);
+        weigh(Moment::BeforeKick);
         plan_.add(
             "extremes", [&flow = flow_] { boundCorrection(flow); }, Initial::No,
             keepsLists ? "" : noLists);
@@ -114,8 +117,10 @@ private:
     // Symplectic Euler, with pressures that keep densities from growing by where it leads.
     void incompressible() {
         evaluateForces(Initial::Yes);
+        weigh(Moment::ForcesKnown);
         add("gradients", onPairsOrFluid<SumGradients<K, inner>>);
         chooseStep();
+        weigh(Moment::BeforeKick);
         add("kick", onFluid<Integrate<Kick>>);
         add("source", onPairsOrFluid<FindSource<K, inner>>);
         plan_.add("begin solve", [&solver = solver_] { solver.begin(); });
@@ -126,6 +131,7 @@ private:
         plan_.endLoop([&solver = solver_] { return !solver.goesOn(); }, solver_.goesOnFlag());
         plan_.add("shorten steps", [&solver = solver_] { solver.shortenSteps(); });
         add("pressure kick", onFluid<Integrate<PressureKick>>);
+        weigh(Moment::PressureSolved);
         addPartForces(Initial::No, true);
         move({2, true});
         plan_.add(
@@ -208,8 +214,13 @@ private:
         stir();
     }
     void stir() {
+        weigh(Moment::BeforeStir);
         add("stir", onFluid<StirFluid>, Initial::No,
             flow_.stir.radius > 0 ? "" : "nothing is stirred");
+        weigh(Moment::Stirred);
+    }
+    void weigh(Moment moment) {
+        forEachPart(parts_, [&](auto& part) { part.weigh(plan_, moment); });
     }
     // Solids and objects, by the forces that were found last; also those that the mouse drags.
     void move(ShareOfStep share) {
@@ -223,6 +234,7 @@ private:
         if (!carriesDensity(scene_)) return add(names.both, onFluid<Integrate<kick | drift>>);
         if constexpr (kick != 0) add(names.kick, onFluid<Integrate<kick>>);
         addRate();
+        if constexpr (drift & Drift) weigh(Moment::BeforeDrift);
         add(names.drift, factsOf(scene_).fillsSpace
                              ? onFluid<Integrate<drift | DriftDensity | DriftShifted | KeepVolume>>
                          : shiftsParticles(scene_)
@@ -234,8 +246,7 @@ private:
         add(shiftsParticles(scene_) ? "transport" : "density rate", ratePass());
     }
     void end() {
-        noteTerms(OptionalTerms{});
-        noteTerms(Mixing{});
+        noteTerms(Joined<OptionalTerms, Mixing>{});
         forEachPart(parts_, [&](auto& part) { part.collide(plan_); });
     }
 
@@ -255,10 +266,7 @@ private:
                    ? onPairsOrFluid<ComputeDensity<CubicSplineKernel, false>>
                    : onPairsOrFluid<ComputeDensity<K, false>>;
     }
-    Pass wallPass() const {
-        if (shiftsParticles(scene_)) return wallPass<true>();
-        return wallPass<false>();
-    }
+    Pass wallPass() const { return shiftsParticles(scene_) ? wallPass<true>() : wallPass<false>(); }
     template <bool dense> Pass wallPass() const {
         return flow_.fluidSticks()
                    ? &Flow<Device>::template onWalls<ExtrapolateToWalls<K, true, dense>>
