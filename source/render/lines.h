@@ -21,7 +21,7 @@ struct Arrow {
 };
 
 // As the shaders have it.
-struct Segment {
+struct DrawnLine {
     std::array<float, 4> from, to, color;  // from[3]: width in px; color[3]: opacity
 };
 
@@ -44,7 +44,7 @@ public:
     // upper left corner.
     std::array<std::array<float, 2>, 3> addAxes();
 
-    const std::vector<Segment>& all() const { return all_; }
+    const std::vector<DrawnLine>& all() const { return all_; }
     int count() const { return int(all_.size()); }
 
 private:
@@ -53,7 +53,7 @@ private:
     const OrbitCamera& camera_;
     int width_, height_;
     float thick_;  // px
-    std::vector<Segment> all_;
+    std::vector<DrawnLine> all_;
 };
 
 // px, of lines in a picture so many pixels high.

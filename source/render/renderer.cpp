@@ -269,7 +269,7 @@ void Renderer::drawLines(const DrawSettings& s) {
     for (const Ring& ring : s.rings) lines.addRing(ring);
     if (s.axes) axisNames_ = lines.addAxes();
     if (lines.count() == 0) return;
-    glNamedBufferData(segments_, GLsizeiptr(size_t(lines.count()) * sizeof(Segment)),
+    glNamedBufferData(segments_, GLsizeiptr(size_t(lines.count()) * sizeof(DrawnLine)),
                       lines.all().data(), GL_STREAM_DRAW);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, segments_);
     glEnable(GL_BLEND);
