@@ -139,6 +139,8 @@ TEST(Arrows, AreAtCellsOfTheFluid) {
             EXPECT_NEAR(a.velocity.x, 1 + a.middle.x, 1e-4f);
             EXPECT_NEAR(a.velocity.y, 2, 1e-5f);
         }
+        const std::vector<Vertex> drop = {fluid[0]};
+        EXPECT_TRUE(velocitiesOf(scene, moving(scene, drop)).empty()) << "one particle is no flow";
         if (axis != Across::None) continue;
         scene.view.clip.max.x = 0.5f;
         EXPECT_EQ(velocitiesOf(scene, moving(scene, fluid)).size(), arrows.size() / 2);
