@@ -21,8 +21,7 @@ void main() {
     float depth = sqrt(inside) * sphere.y;
 #ifdef THICKNESS
     ivec2 there = min(ivec2(gl_FragCoord.xy * perPixel.y), textureSize(scene, 0) - 1);
-    float hidden = 2.0 * texelFetch(scene, there, 0).r - 1.0;
-    if (sphere.x > frame.projection[3][2] / (hidden + frame.projection[2][2])) discard;
+    if (sphere.x > distanceOf(2.0 * texelFetch(scene, there, 0).r - 1.0)) discard;
     there = min(ivec2(gl_FragCoord.xy * perPixel.x), textureSize(distances, 0) - 1);
     float front = texelFetch(distances, there, 0).r;
     // Spheres overlap by the cube of their radius: what they hold is what particles hold.
@@ -31,7 +30,6 @@ void main() {
     color = vec4(tint * weight, weight);
 #else
     result = max(sphere.x - depth, 1e-6);
-    float clip = -frame.projection[2][2] * result + frame.projection[3][2];
-    gl_FragDepth = 0.5 * clip / result + 0.5;
+    gl_FragDepth = 0.5 * clipDepth(result) + 0.5;
 #endif
 }

@@ -15,6 +15,7 @@ void main() {
     sphere = vec2(distance, radius);
     gl_Position = frame.projection * vec4(place.xy, min(place.z + radius, -1e-6), 1.0);
     // Where its middle is seen, at the depth of its nearest point.
-    if (distance > radius) gl_Position.xy *= (distance - radius) / distance;
-    gl_PointSize = 2.0 * scale * radius * frame.particle.z / max(distance, 1e-6);
+    if (distance > radius) gl_Position.xy *= divisor(distance - radius) / divisor(distance);
+    gl_PointSize = 2.0 * scale * radius * frame.particle.z / max(divisor(distance), 1e-6);
+    if (!isShown(vertex.xyz, vertex.w)) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
 }

@@ -12,7 +12,7 @@ void main() {
     Segment s = segments[first + gl_InstanceID];
     vec4 ends[2] = vec4[](frame.view * vec4(s.from.xyz, 1.0), frame.view * vec4(s.to.xyz, 1.0));
     // Cut what is nearer than the near plane.
-    float limit = -frame.projection[3][2] / (frame.projection[2][2] - 1.0);
+    float limit = -distanceOf(-1.0);
     for (int i = 0; i < 2; ++i)
         if (ends[i].z > limit && ends[1 - i].z < limit)
             ends[i] = mix(ends[i], ends[1 - i], (ends[i].z - limit) / (ends[i].z - ends[1 - i].z));

@@ -8,7 +8,7 @@ layout(location = 0) uniform bool second;   // draws those that the first call, 
 layout(location = 0) flat out vec4 tint;    // linear colour, opacity
 layout(location = 1) flat out vec3 shape;   // square / sphere, its radius in px and in depth
 
-float pixelsOf(float radius, vec4 place) { return max(radius * frame.particle.z / max(-place.z, 1e-6), frame.particle.y); }
+float pixelsOf(float radius, vec4 place) { return max(radius * frame.particle.z / max(divisor(-place.z), 1e-6), frame.particle.y); }
 
 // In clip space, of the sphere's nearest point.
 float nearestDepth(float radius, vec4 place) {
@@ -43,7 +43,8 @@ void main() {
     vec4 place = frame.view * vec4(vertex.xyz, 1.0);
     bool solid = wall && vertex.w > 0.5, elastic = wall && vertex.w > 1.5;
     float radius = frame.particle.x * (elastic ? vertex.w - 2.0 : wall && !solid ? 0.4 : 1.0);
-    if (isLeftOut(place, radius)) {
+    bool shown = wall ? frame.clipLow.w < 0.5 || isInside(vertex.xyz) : isShown(vertex.xyz, vertex.w);
+    if (!shown || isLeftOut(place, radius)) {
         gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
         return;
     }

@@ -14,7 +14,7 @@ void main() {
     float own = texelFetch(distances, here, 0).r;
     result = own;
     if (own <= 0.0) return;
-    float radius = frame.particle.x, pixels = reach.x * radius * frame.particle.z * reach.y / own;
+    float radius = frame.particle.x, pixels = reach.x * radius * frame.particle.z * reach.y / divisor(own);
     int pairs = clamp(int(pixels + 0.5), 1, most);
     float stride = max(pixels / float(pairs), 1.0);
     float behind = 4.0 * radius, before = behind;   // how far neighbours may be

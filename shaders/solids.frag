@@ -1,9 +1,11 @@
 // The light of particles.frag on a matt surface, from whichever side it is seen.
 layout(location = 0) in vec3 normal;
 layout(location = 1) in vec3 place;
+layout(location = 2) in vec3 world;
 layout(location = 0) out vec4 result;
 
 void main() {
+    if (frame.clipLow.w > 0.5 && !isInside(world)) discard;
     vec3 n = normalize(normal);
     if (dot(n, place) > 0.0) n = -n;
     float key = max(dot(n, vec3(-0.448, 0.647, 0.617)), 0.0);

@@ -48,7 +48,7 @@ vec3 mirrored(vec3 direction) {
 // Where fluid is torn to drops there is air in it. At the outline of more of it, it's thin on one
 // side only.
 float torn(vec2 at, float distance) {
-    vec2 apart = 8.0 * frame.particle.x * frame.particle.z / distance / frame.picture.xy;
+    vec2 apart = 8.0 * frame.particle.x * frame.particle.z / divisor(distance) / frame.picture.xy;
     float most = 0.0;
     for (int k = 0; k < 4; ++k)
         most = max(most, texture(thicknesses, at + vec2(2 * (k % 2) - 1, k - k % 2 - 1) * apart).r);
@@ -61,7 +61,7 @@ void main() {
     if (seen.fluid < 0.25) discard;
     float distance = seen.distance, cover = clamp(2.0 * seen.fluid - 0.5, 0.0, 1.0);
     vec3 here = placeAt(at, distance), normal = normalize(seen.normal);
-    vec3 toEye = normalize(-here);
+    vec3 toEye = isOrthographic() ? vec3(0.0, 0.0, 1.0) : normalize(-here);
     float facing = clamp(dot(normal, toEye), 0.0, 1.0);
     // At the outline, where there is no neighbour to tell the slope, it mirrors less.
     float edge = smoothstep(0.5, 1.0, seen.inside) * smoothstep(0.0, 0.2, facing);
@@ -69,7 +69,7 @@ void main() {
     float thickness = texture(thicknesses, at).r;
 
     // Bent by as much as the fluid is thick there.
-    float bend = min(0.35 * thickness * frame.particle.z / distance, 0.06 * frame.picture.y);
+    float bend = min(0.35 * thickness * frame.particle.z / divisor(distance), 0.06 * frame.picture.y);
     vec2 through = clamp(at - normal.xy * bend / frame.picture.xy, texel, 1.0 - texel);
     vec3 back = texture(behind, through).rgb;
     back *= back;
@@ -94,6 +94,5 @@ void main() {
     vec3 middle = normalize(lampAt + toEye);
     shade += 0.5 * edge * pow(max(dot(normal, middle), 0.0), 160.0);
     result = vec4(sqrt(clamp(shade, 0.0, 1.0)), cover);
-    float clip = -frame.projection[2][2] * distance + frame.projection[3][2];
-    gl_FragDepth = 0.5 * clip / distance + 0.5;
+    gl_FragDepth = 0.5 * clipDepth(distance) + 0.5;
 }

@@ -2,7 +2,10 @@
 
 #include "app/solid_shapes.h"
 #include "render/color_map.h"
+#include "core/error.h"
 #include "render/cuda_interop.h"
+#include "scene/color_file.h"
+#include "scene/schema.h"
 
 #include <fmt/format.h>
 
@@ -62,16 +65,39 @@ Quantity quantity(ColorBy by) {
             return {"surface", ""};
         case ColorBy::Id:
             return {"particle id", ""};
+        case ColorBy::VelocityX:
+            return {"velocity x", "m/s"};
+        case ColorBy::VelocityY:
+            return {"velocity y", "m/s"};
+        case ColorBy::VelocityZ:
+            return {"velocity z", "m/s"};
+        case ColorBy::Vorticity:
+            return {"vorticity", "1/s"};
+        case ColorBy::ShearRate:
+            return {"shear rate", "1/s"};
+        case ColorBy::Divergence:
+            return {"divergence", "1/s"};
+        case ColorBy::Neighbours:
+            return {"neighbours", ""};
+        case ColorBy::TimeBin:
+            return {"time bin", ""};
     }
     return {"", ""};
+}
+
+bool isNumber(ColorBy by) {
+    return by != ColorBy::Plain && by != ColorBy::Fluid && by != ColorBy::Surface;
 }
 
 OrbitCamera cameraOf(const Scene& scene, float aspect) {
     const Camera& c = scene.view.camera;
     const Vec3 size = domainSize(scene);
     OrbitCamera camera{0.5f * size, c.yaw, c.pitch, c.distance, c.fieldOfView, upward(scene)};
+    camera.orthographic = scene.view.projection == Projection::Orthographic;
     if (c.distance <= 0) camera.distance = fitDistance(camera, size, aspect);
     if (!c.automaticTarget) camera.target = c.target - scene.domain.min;
+    // All of the domain is before the eye, and what has left it by not too much.
+    camera.depth = 2 * length(size) + length(camera.target - 0.5f * size);
     return camera;
 }
 
@@ -98,10 +124,41 @@ void Frame::update(Simulation& simulation, const Scene& scene) {
     vertices_.resize(fluidCount_ + wallCount_ + objectCount_);
     seen_ = write(simulation, scene.view.colorBy);
     run_[scene.view.colorBy].add(time, seen_);
+    lookInside(simulation, scene);
+    followPath(simulation, scene);
+}
+
+void Frame::followPath(Simulation& simulation, const Scene& scene) {
+    constexpr size_t most = 20000;  // pieces; then every second place is forgotten
+    const int id = scene.view.pathOf;
+    if (std::exchange(pathOf_, id) != id) path_.clear();
+    if (id < 0 || id >= simulation.fluidCount()) return;
+    const double now = simulation.clock().time;
+    std::erase_if(path_, [&](const Place& p) { return p.time >= now; });  // the run went back
+    path_.push_back({now, toFloat(simulation.particle(id).position) - scene.domain.min});
+    if (path_.size() < most) return;
+    for (size_t i = 0; i < path_.size() / 2; ++i) path_[i] = path_[2 * i + 1];
+    path_.resize(path_.size() / 2);
+}
+
+void Frame::lookInside(Simulation& simulation, const Scene& scene) {
+    slice_.reset(), arrows_.clear();
+    if (scene.view.slice.axis != Across::None) {
+        if (!sight_) sight_.emplace(scene);
+        Sees sees;
+        if (sight_->anyThin())
+            sees = [past = sight_->past(simulation.solidPoses())](Vec3d particle, Vec3d from) {
+                return past(particle, from) > 0.5;
+            };
+        slice_ = sliceOf(scene, vertices_.read(fluidCount_), sees);
+    }
+    if (scene.view.arrows.count > 0) arrows_ = velocitiesOf(scene, simulation.particles());
+    for (const CellVelocity& c : arrows_) arrowSpeed_ = std::max(arrowSpeed_, length(c.velocity));
 }
 
 void Frame::begin(const Scene& scene) {
     run_.clear();
+    sight_.reset(), arrowSpeed_ = 0;
     std::vector<SolidShape> shapes;
     for (const Solid& solid : scene.solids) shapes.push_back(shapeOf(scene, solid));
     renderer_.setSolids(std::move(shapes));
@@ -127,6 +184,12 @@ Range Frame::range(const View& view) const {
     // Fluid at rest must not show its round-off in all colours: it has the lowest one.
     const float least = 1e-5f * std::max({std::abs(r.min), std::abs(r.max), 1e-3f});
     if (!(r.max - r.min >= least)) r.max = r.min;
+    if (view.colorScale == ColorScale::Linear || !isNumber(view.colorBy)) return r;
+    // What has no logarithm has the lowest colour.
+    constexpr float mostDecades = 1e4f, leastValue = 1e-30f;
+    const bool asked = view.range == RangeMode::Fixed && r.min > 0;
+    r.max = std::max(r.max, leastValue);
+    r.min = asked ? r.min : std::max(r.min, r.max / mostDecades);
     return r;
 }
 
@@ -159,7 +222,7 @@ std::vector<Swatch> fluidsOf(const Scene& scene) {
     return sorted;
 }
 
-void Frame::draw(const Scene& scene, std::vector<Ring> rings) {
+void Frame::setColors(DrawSettings& settings, const Scene& scene) {
     const View& view = scene.view;
     Range r = range(view);
     std::vector<Swatch> swatches;
@@ -169,7 +232,66 @@ void Frame::draw(const Scene& scene, std::vector<Ring> rings) {
     if (!swatches.empty())
         r = {swatches.front().value,
              std::max(swatches.back().value, swatches.front().value + 1e-3f)};
+    settings.plain = view.colorBy == ColorBy::Plain;
+    settings.map = view.colorMap;
+    std::string note = swatches.empty() ? rangeNote(view) : "";
+    if (view.colorMap == ColorMap::File && colorFile_ != view.colorFile) {
+        colorFile_ = view.colorFile, ownColors_.reset();
+        try {
+            ownColors_ = readColors(colorFile_);
+        } catch (const Error&) {}  // the window goes on, and says so
+    }
+    if (view.colorMap == ColorMap::File && !ownColors_)
+        settings.map = ColorMap::Viridis, note = "no such color_file";
+    if (ownColors_) settings.ownColors = *ownColors_;
+    settings.rangeMin = r.min;
+    settings.rangeMax = r.max;
+    settings.logarithmic = view.colorScale == ColorScale::Logarithmic && isNumber(view.colorBy);
+    if (view.slice.axis != Across::None)
+        note = fmt::format("{} = {:.4g} m", enumNames(view.slice.axis)[size_t(view.slice.axis)],
+                           slicePlace(scene));
     const Quantity shown = quantity(view.colorBy);
+    settings.legend = LegendText{shown.name, shown.unit, note};
+    settings.swatches = std::move(swatches);
+}
+
+namespace {
+
+// So many lines over the range, at round values, or powers of ten and parts of them.
+float contourStep(const View& view, float min, float max, bool logarithmic) {
+    const int count = view.slice.contours;
+    if (count == 0 || !(max > min) || !isNumber(view.colorBy)) return 0;
+    if (!logarithmic) return float(tickStep(double(max) - double(min), count));
+    const float decades = std::log10(max / min), each = float(count) / decades;
+    return std::log(10.0f) * (each >= 1 ? 1 / std::round(each) : std::ceil(decades / float(count)));
+}
+
+}  // namespace
+
+void Frame::setInside(DrawSettings& settings, const Scene& scene) {
+    const View& view = scene.view;
+    if (view.threshold.on && isNumber(view.colorBy))
+        settings.shownMin = view.threshold.min, settings.shownMax = view.threshold.max;
+    const ClipBox box = clipBox(scene);
+    settings.clipLow = box.low, settings.clipHigh = box.high;
+    settings.clipSolids = view.clip.solids;
+    if (slice_) settings.slice = &*slice_;
+    settings.fluid = !slice_ || view.slice.fluid;
+    settings.contourStep =
+        contourStep(view, settings.rangeMin, settings.rangeMax, settings.logarithmic);
+    // What has gone out on one side has come in on the other.
+    for (size_t i = 1; i < path_.size(); ++i)
+        if (length(path_[i].at - path_[i - 1].at) < 0.4f * length(domainSize(scene)))
+            settings.path.push_back({path_[i - 1].at, path_[i].at});
+    for (const CellVelocity& c : arrows_) {
+        const float scale = view.arrows.length * arrowStep(scene) / std::max(arrowSpeed_, 1e-9f);
+        settings.arrows.push_back({c.middle, c.middle + scale * c.velocity});
+    }
+}
+
+void Frame::draw(const Scene& scene, std::vector<Ring> rings,
+                 std::vector<std::array<Vec3, 2>> marks) {
+    const View& view = scene.view;
     DrawSettings settings;
     settings.camera = cameraOf(scene, float(width()) / float(height()));
     settings.domainSize = domainSize(scene);
@@ -177,16 +299,16 @@ void Frame::draw(const Scene& scene, std::vector<Ring> rings) {
     settings.wallCount = wallCount_ + objectCount_;
     settings.outline = view.showOutline;
     settings.ground = view.showGround;
+    settings.axes = view.showAxes;
+    settings.scale = view.showScale;
+    settings.theme = view.theme;
     settings.diameter = scene.simulation.spacing * view.particleScale;
     settings.minimumPixels = scene.window.pointSize;
     settings.surface = view.style == DrawStyle::Surface;
     settings.flat = scene.simulation.dimensions == 2;
-    settings.plain = view.colorBy == ColorBy::Plain;
-    settings.map = view.colorMap;
-    settings.rangeMin = r.min;
-    settings.rangeMax = r.max;
-    settings.legend = LegendText{shown.name, shown.unit, swatches.empty() ? rangeNote(view) : ""};
-    settings.swatches = std::move(swatches);
+    setColors(settings, scene);
+    settings.path = std::move(marks);
+    setInside(settings, scene);
     settings.rings = std::move(rings);
     settings.solids = solids_;
     renderer_.draw(vertices_, settings);

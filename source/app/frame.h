@@ -1,12 +1,16 @@
 #pragma once
 // The one place that turns a scene and its simulation into a picture; the window and headless share
 // it.
+#include "app/inside.h"
 #include "app/run_range.h"
 #include "render/renderer.h"
 #include "scene/scene.h"
+#include "sim/neighbours/line_of_sight.h"
 #include "sim/simulation.h"
 
+#include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,14 +28,16 @@ public:
     // Lets the simulation write the vertices that this scene's view asks for, and follows their
     // range.
     void update(Simulation&, const Scene&);
+    // Takes note of where the particle of view.path_of is; update() does so too.
+    void followPath(Simulation&, const Scene&);
     // A GPU that steps but doesn't draw hands its vertices over by a copy through the host.
     bool copiesVertices() const { return copied_; }
-    // Forgets the ranges over the run and the solids: after a reset or another scene.
-    void restart() { fresh_ = true; }
+    // Forgets the ranges over the run, the path and the solids: after a reset or another scene.
+    void restart() { fresh_ = true, path_.clear(); }
 
-    // Draws what the last update() wrote; `rings` are marks over it, relative to the domain's lower
-    // corner.
-    void draw(const Scene&, std::vector<Ring> rings = {});
+    // Draws what the last update() wrote, and marks over it, relative to the domain's lower corner.
+    void draw(const Scene&, std::vector<Ring> rings = {},
+              std::vector<std::array<Vec3, 2>> marks = {});
     Image image() const { return renderer_.image(); }
     void blit(int x, int y) const { renderer_.blit(x, y); }
     std::optional<Vec3> surfaceAt(int x, int y) const { return renderer_.surfaceAt(x, y); }
@@ -43,6 +49,9 @@ public:
 private:
     Range write(Simulation&, ColorBy);
     void begin(const Scene&);
+    void lookInside(Simulation&, const Scene&);
+    void setColors(DrawSettings&, const Scene&);
+    void setInside(DrawSettings&, const Scene&);
     std::string rangeNote(const View&) const;
 
     Renderer renderer_;
@@ -52,7 +61,19 @@ private:
     std::map<ColorBy, RunRange> run_;  // of all since restart(), by what was shown
     double begin_ = 0;                 // s, the first update's time
     std::vector<ShapePose> solids_;
-    bool fresh_ = true;  // another run
+    std::optional<SliceField> slice_;   // if the last update's view had one
+    std::vector<CellVelocity> arrows_;  // likewise
+    struct Place {
+        double time;  // s
+        Vec3 at;
+    };
+    std::vector<Place> path_;
+    int pathOf_ = -1;
+    float arrowSpeed_ = 0;                 // m/s, of the longest of them since restart()
+    std::optional<LineOfSight> sight_;     // once a slice has been asked for
+    std::string colorFile_;                // that ownColors_ are of
+    std::optional<ColorTable> ownColors_;  // nothing: it could not be read
+    bool fresh_ = true;                    // another run
     bool copied_ = false;
 };
 
@@ -75,5 +96,7 @@ struct Quantity {
     const char* unit;
 };
 Quantity quantity(ColorBy);
+// Whether it is a number, and not one of a few kinds.
+bool isNumber(ColorBy);
 
 }  // namespace spindrift

@@ -280,6 +280,10 @@ private:
         if (hasRows())
             recorders_.push_back({row, after(series_->lastTime(), row), [this] { addRow(); },
                                   [this](double time) { series_->dropAfter(time); }});
+        if (scene_.view.pathOf >= 0 && pictures_)
+            recorders_.push_back({frame, after(-1, frame),
+                                  [this] { pictures_->frame.followPath(*simulation_, scene_); },
+                                  [](double) {}});
         if (!output.frames.empty()) {
             if (first_ > 0) countFramesBefore(frame);
             recorders_.push_back(

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace spindrift {
 namespace {
@@ -120,7 +121,7 @@ std::vector<Fields> interpolate(const std::vector<Particle>& particles, const Po
             const double basis[N] = {1, r.x, r.y, r.z};
             const double values[Sides] = {p.velocity.x, p.velocity.y, p.velocity.z, p.pressure,
                                           p.density};
-            equations[size_t(point)].add(basis, values, std::pow(1 - q, 4) * (1 + 4 * q));
+            equations[size_t(point)].add(basis, values, weightAt(q));
         });
     for (size_t i = 0; i < out.size(); ++i) {
         double f[Sides];
@@ -128,6 +129,38 @@ std::vector<Fields> interpolate(const std::vector<Particle>& particles, const Po
         out[i] = {{f[0], f[1], f[2]}, f[3], f[4], out[i].neighbours};
     }
     return out;
+}
+
+std::vector<Smoothed> interpolate(const std::vector<Sample>& samples, const PointsNear& points,
+                                  const Sees& sees) {
+    std::vector<Smoothed> out(points.points());
+    for (const Sample& s : samples)
+        points.visit(s.position, sees, [&](int point, Vec3d, double q) {
+            Smoothed& o = out[size_t(point)];
+            const double weight = weightAt(q);
+            o.weight += weight, o.value += weight * s.value;
+        });
+    for (Smoothed& o : out)
+        if (o.weight > 0) o.value /= o.weight;
+    return out;
+}
+
+double weightAt(double q) {
+    const double square = (1 - q) * (1 - q);
+    return square * square * (1 + 4 * q);
+}
+
+double filledBy(const Scene& scene, double radius) {
+    const double R = radius, volume = particleMass(scene) / scene.fluid.restDensity;
+    return volume * (scene.simulation.dimensions == 2 ? 7 / (std::numbers::pi * R * R)
+                                                      : 21 / (2 * std::numbers::pi * R * R * R));
+}
+
+Surroundings surroundings(const Scene& scene, Surroundings::Beyond wall) {
+    Surroundings s{toDouble(scene.domain.min), toDouble(scene.domain.max)};
+    for (int k = 0; k < scene.simulation.dimensions; ++k)
+        s.beyond[k] = scene.domain.periodic(k) ? Surroundings::Again : wall;
+    return s;
 }
 
 std::vector<Fields> interpolate(const std::vector<Particle>& particles,

@@ -78,4 +78,23 @@ std::vector<Fields> interpolate(const std::vector<Particle>&, const PointsNear&,
 std::vector<Fields> interpolate(const std::vector<Particle>&, const std::vector<Vec3d>& points,
                                 double radius, Order = Order::Linear);
 
+// The same of one quantity alone, Order::Mean: for pictures, which want many points.
+struct Sample {
+    Vec3d position;  // m
+    double value;
+};
+struct Smoothed {
+    double value = 0;   // 0 where there is no particle
+    double weight = 0;  // sum of weightAt
+};
+std::vector<Smoothed> interpolate(const std::vector<Sample>&, const PointsNear&, const Sees& = {});
+
+// Of a particle q radii away: Wendland C2, 1 at a point itself.
+double weightAt(double q);
+// What a particle fills of what is around itself: its volume x W(0). Times the sum of weights: the
+// share of what is around a point that is fluid.
+double filledBy(const Scene&, double radius);
+// Over the scene's periodic sides is the domain again, over the others `wall`. World coordinates.
+Surroundings surroundings(const Scene&, Surroundings::Beyond wall);
+
 }  // namespace spindrift

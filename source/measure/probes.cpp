@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 namespace spindrift {
@@ -21,13 +20,6 @@ bool flat(const Scene& scene, int axis) { return scene.simulation.dimensions == 
 Vec3d placed(const Scene& scene, Vec3d at) {
     if (flat(scene, 2)) at.z = 0.5 * (double(scene.domain.min.z) + double(scene.domain.max.z));
     return at;
-}
-
-Surroundings surroundings(const Scene& scene, Surroundings::Beyond wall) {
-    Surroundings s{toDouble(scene.domain.min), toDouble(scene.domain.max)};
-    for (int k = 0; k < scene.simulation.dimensions; ++k)
-        s.beyond[k] = scene.domain.periodic(k) ? Surroundings::Again : wall;
-    return s;
 }
 
 // The axis across the wall that a sensor is in, -1 for one in the fluid.
@@ -136,9 +128,6 @@ std::string named(const char* list, size_t index, const std::string& name) {
     return fmt::format("{}[{}]{}", list, index, name.empty() ? "" : " (" + name + ")");
 }
 
-// Wendland C2 with radius 1, without its norm.
-double wendland(double q) { return std::pow(1 - q, 4) * (1 + 4 * q); }
-
 Fields mean(const Fields* f, size_t count) {
     Fields sum;
     const double share = 1 / double(count);
@@ -191,14 +180,11 @@ void Probes::addFielded(const Scene& scene, const Probe& probe) {
 }
 
 void Probes::addGauge(const Scene& scene, const Probe& probe) {
-    const int k = int(probe.axis), d = scene.simulation.dimensions;
+    const int k = int(probe.axis);
     const double R = supportRadius(scene), low = scene.domain.min[k], high = scene.domain.max[k];
     const std::vector<Vec3d> points = pointsOf(scene, probe);
-    const double volume = particleMass(scene) / scene.fluid.restDensity;
-    const double norm =
-        d == 2 ? 7 / (std::numbers::pi * R * R) : 21 / (2 * std::numbers::pi * R * R * R);
     gauges_.push_back({PointsNear(points, R, surroundings(scene, Surroundings::Mirror)), low,
-                       (high - low) / double(points.size() - 1), R, volume * norm});
+                       (high - low) / double(points.size() - 1), R, filledBy(scene, R)});
 }
 
 Sees Probes::sightPast(const std::vector<SolidPose>& poses) const {
@@ -213,7 +199,7 @@ double Probes::heightOf(const Gauge& gauge, const std::vector<Particle>& particl
     std::vector<double> filled(gauge.near.points());
     for (const Particle& p : particles)
         gauge.near.visit(p.position, sees, [&](int point, Vec3d, double q) {
-            filled[size_t(point)] += gauge.share * wendland(q);
+            filled[size_t(point)] += gauge.share * weightAt(q);
         });
     // Where the share crosses a half, on a straight line between two samples.
     auto crossing = [&](size_t i) {

@@ -31,20 +31,30 @@ Vec3 OrbitCamera::right() const {
     return turned({std::cos(yaw * degree), 0, -std::sin(yaw * degree)});
 }
 Vec3 OrbitCamera::up() const { return cross(right(), forward()); }
-Vec3 OrbitCamera::eye() const { return target - distance * forward(); }
+Vec3 OrbitCamera::eye() const { return target - (orthographic ? depth : distance) * forward(); }
+Vec3 OrbitCamera::toEye(Vec3 at) const { return orthographic ? -depth * forward() : eye() - at; }
 
 glm::mat4 OrbitCamera::view() const {
     return glm::lookAt(toGlm(eye()), toGlm(target), toGlm(up()));
 }
 
 glm::mat4 OrbitCamera::projection(float aspect) const {
-    return glm::perspective(fieldOfView * degree, aspect, nearPlane(), farPlane());
+    if (!orthographic)
+        return glm::perspective(fieldOfView * degree, aspect, nearPlane(), farPlane());
+    const float half = distance * std::tan(0.5f * fieldOfView * degree);
+    return glm::ortho(-half * aspect, half * aspect, -half, half, nearPlane(), farPlane());
+}
+
+float OrbitCamera::distanceAt(float depth) const {
+    const float n = nearPlane(), f = farPlane();
+    return orthographic ? std::lerp(n, f, depth) : 2 * f * n / (f + n - (2 * depth - 1) * (f - n));
 }
 
 Ray OrbitCamera::ray(float x, float y, float width, float height) const {
     const float tangent = std::tan(0.5f * fieldOfView * degree);
     const float u = (2 * x / width - 1) * tangent * width / height;
     const float v = (1 - 2 * y / height) * tangent;
+    if (orthographic) return {eye() + distance * (u * right() + v * up()), forward()};
     return {eye(), normalized(forward() + u * right() + v * up())};
 }
 
@@ -57,6 +67,12 @@ Vec3 OrbitCamera::onPlane(float x, float y, float width, float height, Vec3 poin
 void OrbitCamera::orbit(float degreesRight, float degreesUp) {
     yaw = std::remainder(yaw + degreesRight, 360.0f);
     pitch = std::clamp(pitch + degreesUp, -89.0f, 89.0f);
+}
+
+void OrbitCamera::lookFrom(Vec3 direction) {
+    const Vec3 d = upright(direction);
+    pitch = std::asin(std::clamp(d.y, -1.0f, 1.0f)) / degree;
+    if (std::abs(d.y) < 0.999f) yaw = std::atan2(d.x, d.z) / degree;
 }
 
 void OrbitCamera::pan(float dx, float dy, float height) {
@@ -78,7 +94,8 @@ float fitDistance(const OrbitCamera& camera, Vec3 size, float aspect) {
                      (corner & 4 ? 0.5f : -0.5f) * size.z};
         const float across =
             std::max(std::abs(dot(p, camera.right())) / aspect, std::abs(dot(p, camera.up())));
-        distance = std::max(distance, margin * across / tangent - dot(p, camera.forward()));
+        distance = std::max(distance, margin * across / tangent -
+                                          (camera.orthographic ? 0 : dot(p, camera.forward())));
     }
     return distance;
 }

@@ -16,6 +16,10 @@ struct OrbitCamera {
     float distance = 3;
     float fieldOfView = 40;  // vertical
     Vec3 upward{0, 1, 0};    // the axis, or its opposite, that is up
+    // Nothing gets smaller with distance: all that is nearer to the target than `depth`, m, along
+    // the view is seen, and as large as what is at the target is in perspective.
+    bool orthographic = false;
+    float depth = 0;
 
     // From the axes in which y is up and a camera of yaw and pitch 0 looks along -z to the world's,
     // and back: turned about z, or about x where z is up, so that two dimensions are seen face on.
@@ -30,8 +34,12 @@ struct OrbitCamera {
     glm::mat4 view() const;
     // Near and far follow the distance, so that a close look doesn't cut the picture.
     glm::mat4 projection(float aspect) const;
-    float nearPlane() const { return 0.01f * distance; }
-    float farPlane() const { return 100 * distance; }
+    float nearPlane() const { return orthographic ? 0 : 0.01f * distance; }
+    float farPlane() const { return orthographic ? 2 * depth : 100 * distance; }
+    // From the eye's plane, m, of what has this depth, 0 to 1, in a picture.
+    float distanceAt(float depth) const;
+    // From a point to the eye, m.
+    Vec3 toEye(Vec3 at) const;
 
     // A pixel's ray; (0, 0) is the upper left corner of a picture of width x height.
     Ray ray(float x, float y, float width, float height) const;
@@ -39,6 +47,8 @@ struct OrbitCamera {
     Vec3 onPlane(float x, float y, float width, float height, Vec3 point) const;
 
     void orbit(float degreesRight, float degreesUp);
+    // Turns until it looks against this direction, of length 1.
+    void lookFrom(Vec3 direction);
     // Moves the target with the picture: a drag by (dx, dy) pixels in a picture `height` pixels
     // tall.
     void pan(float dx, float dy, float height);

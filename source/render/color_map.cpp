@@ -56,6 +56,8 @@ const Knots& knotsOf(ColorMap map) {
             return turbo;
         case ColorMap::Coolwarm:
             return coolwarm;
+        case ColorMap::File:
+            break;
     }
     CHECK(!"a colour map without a table");
     return viridis;
@@ -88,6 +90,8 @@ const char* colorMapName(ColorMap map) {
             return "turbo";
         case ColorMap::Coolwarm:
             return "coolwarm";
+        case ColorMap::File:
+            return "own colours";
     }
     CHECK(!"a colour map without a name");
     return "";

@@ -1,7 +1,6 @@
 #include "render/legend.h"
 
-#include "render/color_map.h"
-#include "render/overlay.h"
+#include "render/lines.h"
 
 #include <fmt/format.h>
 
@@ -10,17 +9,12 @@
 
 namespace spindrift {
 
-namespace {
-
-// The round number that splits `span` into at most `count` steps.
 double tickStep(double span, int count) {
     const double power = std::pow(10.0, std::floor(std::log10(span / count)));
     for (double factor : {1.0, 2.0, 5.0})
         if (span / (factor * power) <= count) return factor * power;
     return 10 * power;
 }
-
-}  // namespace
 
 std::vector<double> ticks(double min, double max, int count) {
     std::vector<double> found;
@@ -43,19 +37,45 @@ std::string tickLabel(double value, double step) {
     return fmt::format("{:.{}f}", value, decimals);
 }
 
-std::vector<Mark> fittingMarks(double min, double max, float bar, float overhang,
+std::vector<double> logarithmicTicks(double min, double max, bool dense, int stride) {
+    std::vector<double> found;
+    const auto lowest = int(std::floor(std::log10(min))), highest = int(std::ceil(std::log10(max)));
+    for (int power = lowest; power <= highest; ++power)
+        for (const double factor : {1.0, 2.0, 5.0}) {
+            const double value = factor * std::pow(10.0, power);
+            if ((factor > 1 && !dense) || power % stride != 0) continue;
+            if (value >= (1 - 1e-6) * min && value <= (1 + 1e-6) * max) found.push_back(value);
+        }
+    return found;
+}
+
+namespace {
+
+// Choices of marks, those with most of them first.
+std::vector<std::vector<double>> choicesOf(double min, double max, bool logarithmic) {
+    std::vector<std::vector<double>> choices;
+    if (logarithmic && max > min) choices.push_back(logarithmicTicks(min, max, true, 1));
+    for (int k = 1; k <= 5; ++k)
+        choices.push_back(logarithmic && max > min ? logarithmicTicks(min, max, false, k)
+                                                   : ticks(min, max, 6 - k));
+    return choices;
+}
+
+}  // namespace
+
+std::vector<Mark> fittingMarks(double min, double max, bool logarithmic, float bar, float overhang,
                                const std::function<float(std::string_view)>& widthOf) {
     std::vector<Mark> marks;
-    for (int count = 5; count > 0; --count) {
-        const std::vector<double> values = ticks(min, max, count);
-        const double step = values.size() > 1 ? values[1] - values[0] : 0;
+    const auto scaled = [&](double value) { return logarithmic ? std::log(value) : value; };
+    for (const std::vector<double>& values : choicesOf(min, max, logarithmic)) {
+        const double step = values.size() > 1 && !logarithmic ? values[1] - values[0] : 0;
         marks.clear();
         bool fits = true;
         float end = -1e9f;  // of the label before
         for (double value : values) {
             const std::string label = tickLabel(value, step);
-            const float half = 0.5f * widthOf(label),
-                        at = bar * (max > min ? float((value - min) / (max - min)) : 0);
+            const double share = (scaled(value) - scaled(min)) / (scaled(max) - scaled(min));
+            const float half = 0.5f * widthOf(label), at = bar * (max > min ? float(share) : 0);
             const float last = std::max(bar + overhang - half, half - overhang);
             const float middle = std::clamp(at, half - overhang, last);
             fits &= middle - half > end;
@@ -68,14 +88,13 @@ std::vector<Mark> fittingMarks(double min, double max, float bar, float overhang
         {min, tickLabel(min, 0), 0, std::max(0.0f, 0.5f * widthOf(tickLabel(min, 0)) - overhang)}};
 }
 
-namespace {
-
-const Rgba bright{0.94f, 0.95f, 0.97f}, dim{0.66f, 0.69f, 0.74f};
-
-// Grows with the picture, so that it reads the same at every size and on dense screens.
-float unitOf(int width, int height) {
-    return std::clamp(std::min(float(height) / 760, float(width) / 760), 0.9f, 4.0f);
+Ink inkOf(Theme theme) {
+    if (theme == Theme::Light)
+        return {{0.08f, 0.09f, 0.11f}, {0.34f, 0.37f, 0.42f}, {0.99f, 0.99f, 1, 0.72f}};
+    return {{0.94f, 0.95f, 0.97f}, {0.66f, 0.69f, 0.74f}, {0.04f, 0.05f, 0.07f, 0.62f}};
 }
+
+namespace {
 
 Rgba opaque(const std::array<uint8_t, 3>& c) {
     return {c[0] / 255.0f, c[1] / 255.0f, c[2] / 255.0f};
@@ -87,21 +106,20 @@ struct Box {
     float unit, x, top, bar;
 };
 Box drawBox(Overlay& overlay, int width, int height, float units, const LegendText& text,
-            const std::vector<std::string>& notes) {
+            const Ink& ink, const std::vector<std::string>& notes) {
     const float unit = unitOf(width, height);
     overlay.textSize(14 * unit);
     const float pad = 14 * unit, bar = std::min(270 * unit, 0.6f * float(width)),
                 boxHeight = units * unit;
     const float left = 16 * unit, top = float(height) - boxHeight - 16 * unit;
-    overlay.panel(left, top, bar + 2 * pad + 12 * unit, boxHeight, 8 * unit,
-                  {0.04f, 0.05f, 0.07f, 0.62f});
+    overlay.panel(left, top, bar + 2 * pad + 12 * unit, boxHeight, 8 * unit, ink.panel);
     const float x = std::round(left + pad + 6 * unit), titleLine = top + 23 * unit;
-    overlay.text(x, titleLine, text.title, bright);
-    overlay.text(x + overlay.textWidth(text.title + " "), titleLine, text.unit, dim);
+    overlay.text(x, titleLine, text.title, ink.bright);
+    overlay.text(x + overlay.textWidth(text.title + " "), titleLine, text.unit, ink.dim);
     const float titleWidth = overlay.textWidth(text.title + " " + text.unit + " ");
     for (const std::string& note : notes) {
         if (titleWidth + overlay.textWidth(note) > bar) continue;
-        overlay.text(x + bar - overlay.textWidth(note), titleLine, note, dim);
+        overlay.text(x + bar - overlay.textWidth(note), titleLine, note, ink.dim);
         break;
     }
     return {unit, x, top, bar};
@@ -109,12 +127,11 @@ Box drawBox(Overlay& overlay, int width, int height, float units, const LegendTe
 
 }  // namespace
 
-void drawLegend(Overlay& overlay, int width, int height, const LegendText& text, ColorMap map,
-                float min, float max) {
-    const std::vector<std::string> notes{std::string(colorMapName(map)) + ", " + text.note,
-                                         text.note};
-    const auto [unit, x, top, bar] = drawBox(overlay, width, height, 80, text, notes);
-    const ColorTable table = colorTable(map);
+void drawLegend(Overlay& overlay, int width, int height, const LegendText& text, const Ink& ink,
+                const ColorBar& colors) {
+    const std::vector<std::string> notes{std::string(colors.name) + ", " + text.note, text.note};
+    const auto [unit, x, top, bar] = drawBox(overlay, width, height, 80, text, ink, notes);
+    const ColorTable& table = colors.table;
     const float barTop = std::round(top + 34 * unit), thick = 12 * unit;
     for (size_t i = 0; i < table.size(); ++i) {
         const float from = std::round(bar * float(i) / 256),
@@ -122,21 +139,22 @@ void drawLegend(Overlay& overlay, int width, int height, const LegendText& text,
         overlay.rectangle(x + from, barTop, to - from, thick, opaque(table[i]));
     }
     const auto widthOf = [&](std::string_view label) { return overlay.textWidth(label); };
-    for (const Mark& mark : fittingMarks(min, max, bar, 12 * unit, widthOf)) {
+    for (const Mark& mark :
+         fittingMarks(colors.min, colors.max, colors.logarithmic, bar, 12 * unit, widthOf)) {
         const float tick = std::round(x + mark.at);
         overlay.rectangle(tick - std::round(unit) / 2, barTop + thick,
-                          std::max(1.0f, std::round(unit)), 5 * unit, dim);
+                          std::max(1.0f, std::round(unit)), 5 * unit, ink.dim);
         overlay.text(x + mark.middle - 0.5f * overlay.textWidth(mark.label),
-                     barTop + thick + 19 * unit, mark.label, bright);
+                     barTop + thick + 19 * unit, mark.label, ink.bright);
     }
 }
 
-void drawLegend(Overlay& overlay, int width, int height, const LegendText& text,
+void drawLegend(Overlay& overlay, int width, int height, const LegendText& text, const Ink& ink,
                 const std::vector<Swatch>& swatches) {
     constexpr size_t most = 12;
     const size_t shown = std::min(swatches.size(), most);
     const auto [unit, x, top, bar] =
-        drawBox(overlay, width, height, 36 + 22 * float(shown), text, {text.note});
+        drawBox(overlay, width, height, 36 + 22 * float(shown), text, ink, {text.note});
     for (size_t i = 0; i < shown; ++i) {
         const float line = top + (46 + 22 * float(i)) * unit;
         overlay.rectangle(x, std::round(line - 11 * unit), 13 * unit, 13 * unit,
@@ -144,8 +162,26 @@ void drawLegend(Overlay& overlay, int width, int height, const LegendText& text,
         const bool isLast = i + 1 == most && swatches.size() > most;
         overlay.text(x + 22 * unit, line,
                      isLast ? fmt::format("and {} more", swatches.size() - i) : swatches[i].name,
-                     bright);
+                     ink.bright);
     }
+}
+
+void drawScale(Overlay& overlay, int width, int height, const Ink& ink, float metres, float cell) {
+    const float unit = unitOf(width, height), right = float(width) - 124 * unit,
+                line = float(height) - 30 * unit;
+    overlay.textSize(14 * unit);
+    const double length = tickStep(150 * double(unit * metres), 2);
+    const float bar = std::round(float(length) / metres), x = std::round(right - bar),
+                thick = std::max(1.0f, std::round(1.5f * unit));
+    const std::string label = fmt::format("{:g} m", length);
+    overlay.rectangle(x, line, bar, thick, ink.bright);
+    for (const float end : {x, x + bar - thick})
+        overlay.rectangle(end, line - 5 * unit, thick, 5 * unit + thick, ink.bright);
+    overlay.text(right - bar / 2 - overlay.textWidth(label) / 2, line - 8 * unit, label,
+                 ink.bright);
+    if (cell <= 0) return;
+    const std::string cells = fmt::format("grid {:g} m", cell);
+    overlay.text(right - overlay.textWidth(cells), line + 19 * unit, cells, ink.dim);
 }
 
 }  // namespace spindrift

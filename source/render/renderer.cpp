@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
+#include <utility>
 
 namespace spindrift {
 
@@ -16,18 +18,17 @@ using Four = std::array<float, 4>;
 // std140 twin of the block in shaders/frame.glsl.
 struct FrameBlock {
     glm::mat4 view, projection, viewBefore;  // viewBefore: of the picture before
-    // Of the picture; right and up reach its edges at distance 1. Like the domain's size they are
-    // given where y is up and the ground's corner is 0, whatever is up in the world.
+    // Of the picture; right and up reach its edges at distance 1, in an orthographic view at any.
+    // Like the domain's size they are given where y is up and the ground's corner is 0, whatever is
+    // up in the world.
     Four eye, right, up, forward;
     Four sky;       // the world's up in the camera's axes
     Four picture;   // width, height, samples, line width in px
     Four domain;    // size in m, step of the ground's grid
     Four particle;  // radius in m, smallest in px, px a metre at distance 1, fluids
     Four color;  // lowest value, 1 / span, row of the table; 1 = plain, 2 = plain in two dimensions
-};
-
-struct Segment {
-    Four from, to, color;  // from[3]: width in px
+    Four clipLow, clipHigh;  // box of which fluid is shown; clipLow[3]: 1 = solids are cut too
+    Four look;  // 1 = light, 1 = colours by logarithms, lowest and highest value that is shown
 };
 
 constexpr float degree = 3.14159265f / 180;
@@ -58,37 +59,9 @@ float gridStep(Vec3 size) {
     return 10 * power;
 }
 
-float lineWidth(int height) { return std::clamp(float(height) / 700, 1.0f, 5.0f); }
-
-// `lift`: m, by which lines are nearer to the eye than they are.
-void addBox(std::vector<Segment>& lines, Vec3 size, float width, Four color, Vec3 eye, float lift) {
-    const auto lifted = [&](Vec3 at) { return at + (lift / length(eye - at)) * (eye - at); };
-    for (int axis = 0; axis < 3; ++axis)
-        for (int corner = 0; corner < 4; ++corner) {
-            Vec3 from;
-            from[(axis + 1) % 3] = corner & 1 ? size[(axis + 1) % 3] : 0;
-            from[(axis + 2) % 3] = corner & 2 ? size[(axis + 2) % 3] : 0;
-            Vec3 to = from;
-            to[axis] = size[axis];
-            lines.push_back({pack(lifted(from), width), pack(lifted(to)), color});
-        }
-}
-
-void addRing(std::vector<Segment>& lines, const Ring& ring, const OrbitCamera& camera,
-             float width) {
-    constexpr int corners = 64;
-    const auto point = [&](int i) {
-        const float angle = 360.0f * float(i) / corners * degree;
-        return ring.center +
-               ring.radius * (std::cos(angle) * camera.right() + std::sin(angle) * camera.up());
-    };
-    for (int i = 0; i < corners; ++i)
-        lines.push_back({pack(point(i), 2 * width), pack(point(i + 1)), pack(ring.color, 0.9f)});
-}
-
 GlTexture uploadTables() {
     GlTexture texture = makeTexture(GL_TEXTURE_2D);
-    glTextureStorage2D(texture, 1, GL_RGB8, 256, colorMapCount + 1);
+    glTextureStorage2D(texture, 1, GL_RGB8, 256, colorMapCount + 2);
     glTextureParameteri(texture, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     glTextureParameteri(texture, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     for (int map = 0; map < colorMapCount; ++map)
@@ -127,7 +100,7 @@ void Renderer::setSamples(int samples) {
 void Renderer::draw(const VertexBuffer& vertices, const DrawSettings& settings) {
     CHECK(!vertices.mapped());
     uploadFrame(settings);
-    uploadSwatches(settings);
+    uploadColors(settings);
     camera_ = settings.camera;
     glBindFramebuffer(GL_FRAMEBUFFER, target_.drawing());
     glViewport(0, 0, width(), height());
@@ -138,17 +111,36 @@ void Renderer::draw(const VertexBuffer& vertices, const DrawSettings& settings) 
     glClear(GL_DEPTH_BUFFER_BIT);
     drawBackground(settings);
     if (!settings.solids.empty()) solids_.draw(settings.solids);
+    if (settings.slice) drawSlice(settings);
     drawParticles(vertices, settings);
-    if (settings.surface) drawFluidSurface(settings);
+    if (settings.surface && settings.fluid) drawFluidSurface(settings);
     drawLines(settings);
     target_.resolve();
     glBindFramebuffer(GL_FRAMEBUFFER, target_.resolved());
-    if (settings.legend && !settings.swatches.empty())
-        drawLegend(overlay_, width(), height(), *settings.legend, settings.swatches);
-    else if (settings.legend && !settings.plain)
-        drawLegend(overlay_, width(), height(), *settings.legend, settings.map, settings.rangeMin,
-                   settings.rangeMax);
+    drawText(settings);
     overlay_.flush(width(), height());
+}
+
+void Renderer::drawText(const DrawSettings& s) {
+    const Ink ink = inkOf(s.theme);
+    if (s.legend && !s.swatches.empty())
+        drawLegend(overlay_, width(), height(), *s.legend, ink, s.swatches);
+    else if (s.legend && !s.plain)
+        drawLegend(overlay_, width(), height(), *s.legend, ink,
+                   {s.map == ColorMap::File ? s.ownColors : colorTable(s.map), colorMapName(s.map),
+                    s.rangeMin, s.rangeMax, s.logarithmic});
+    const float unit = unitOf(width(), height());
+    overlay_.textSize(14 * unit);
+    for (size_t k = 0; k < 3 && s.axes; ++k) {
+        const std::string_view name("xyz" + k, 1);
+        const auto [x, y] = axisNames_[k];
+        overlay_.text(x - 0.5f * overlay_.textWidth(name), y + 4 * unit, name, ink.bright);
+    }
+    if (!s.scale) return;
+    const OrbitCamera& c = s.camera;
+    const float metres = 2 * c.distance * std::tan(0.5f * c.fieldOfView * degree) / float(height());
+    drawScale(overlay_, width(), height(), ink, metres,
+              s.ground ? gridStep(Upright(c, s.domainSize).size) : 0);
 }
 
 void Renderer::uploadFrame(const DrawSettings& s) {
@@ -156,30 +148,41 @@ void Renderer::uploadFrame(const DrawSettings& s) {
     const Upright upright(camera, s.domainSize);
     const float aspect = float(width()) / float(height());
     const float tangent = std::tan(0.5f * camera.fieldOfView * degree);
-    const float span = s.rangeMax - s.rangeMin;
+    const auto scaled = [&](float value) { return s.logarithmic ? std::log(value) : value; };
+    const float low = scaled(s.rangeMin), span = scaled(s.rangeMax) - low;
+    const float wide = camera.orthographic ? tangent * camera.distance : tangent;
+    const int row = !s.swatches.empty()       ? colorMapCount
+                    : s.map == ColorMap::File ? colorMapCount + 1
+                                              : int(s.map);
     const FrameBlock block{
         camera.view(),
         camera.projection(aspect),
         camera_.view(),
         pack(upright.camera.eye()),
-        pack(tangent * aspect * upright.camera.right()),
-        pack(tangent * upright.camera.up()),
+        pack(wide * aspect * upright.camera.right()),
+        pack(wide * upright.camera.up()),
         pack(upright.camera.forward()),
         {0, upright.camera.up().y, -upright.camera.forward().y, 0},
         {float(width()), float(height()), float(target_.samples()), lineWidth(height())},
         pack(upright.size, s.ground ? gridStep(upright.size) : 0),
-        {0.5f * s.diameter, 0.5f * s.minimumPixels, 0.5f * float(height()) / tangent,
+        {0.5f * s.diameter, 0.5f * s.minimumPixels, 0.5f * float(height()) / wide,
          float(s.fluidCount)},
-        {s.rangeMin, span > 0 ? 1 / span : 0,
-         s.swatches.empty() ? float(s.map) : float(colorMapCount),
-         s.plain ? (s.flat ? 2.0f : 1.0f) : 0.0f},
+        {low, span > 0 ? 1 / span : 0, float(row), s.plain ? (s.flat ? 2.0f : 1.0f) : 0.0f},
+        pack(s.clipLow, s.clipSolids ? 1 : 0),
+        pack(s.clipHigh),
+        {s.theme == Theme::Light ? 1.0f : 0.0f, s.logarithmic ? 1.0f : 0.0f, s.shownMin,
+         s.shownMax},
     };
     glNamedBufferSubData(frame_, 0, sizeof block, &block);
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, frame_);
 }
 
-// They are a row of the tables, below the maps.
-void Renderer::uploadSwatches(const DrawSettings& s) {
+// What the scene has of its own are rows of the tables, below the maps.
+void Renderer::uploadColors(const DrawSettings& s) {
+    const auto upload = [&](int row, const ColorTable& colors) {
+        glTextureSubImage2D(tables_, 0, 0, row, 256, 1, GL_RGB, GL_UNSIGNED_BYTE, colors.data());
+    };
+    if (s.map == ColorMap::File) upload(colorMapCount + 1, s.ownColors);
     if (s.swatches.empty()) return;
     ColorTable row;
     for (size_t i = 0; i < row.size(); ++i) {
@@ -190,7 +193,7 @@ void Renderer::uploadSwatches(const DrawSettings& s) {
                                   })
                      ->color;
     }
-    glTextureSubImage2D(tables_, 0, 0, colorMapCount, 256, 1, GL_RGB, GL_UNSIGNED_BYTE, row.data());
+    upload(colorMapCount, row);
 }
 
 // The ground belongs to the background: seen from above everything stands in front of it.
@@ -206,7 +209,8 @@ void Renderer::drawBackground(const DrawSettings&) {
 void Renderer::drawParticles(const VertexBuffer& vertices, const DrawSettings& s) {
     occlusion_.resize(target_);
     glVertexArrayVertexBuffer(vertices_, 0, vertices.name(), 0, sizeof(Vertex));
-    const int first = s.surface ? s.fluidCount : 0, count = s.fluidCount + s.wallCount - first;
+    const int first = s.surface || !s.fluid ? s.fluidCount : 0,
+              count = s.fluidCount + s.wallCount - first;
     drawSpheres(first, count, false);
     occlusion_.look(target_);
     drawSpheres(first, count, true);
@@ -233,49 +237,63 @@ void Renderer::drawFluidSurface(const DrawSettings& s) {
     surface_->draw(target_, vertices_, s.fluidCount, tables_);
 }
 
+void Renderer::drawSlice(const DrawSettings& s) {
+    if (!slice_) slice_.emplace();
+    slice_->draw(*s.slice, tables_, s.contourStep, target_.samples() > 1);
+}
+
 void Renderer::drawLines(const DrawSettings& s) {
-    std::vector<Segment> lines;
-    const float width = lineWidth(height());
+    const bool light = s.theme == Theme::Light;
+    const Four outline = light ? Four{0.24f, 0.29f, 0.36f, 0.6f} : Four{0.62f, 0.70f, 0.82f, 0.5f},
+               edge{0.10f, 0.11f, 0.14f, 0.8f};
+    Lines lines(s.camera, width(), height());
     // The fluid's surface reaches a little beyond walls.
-    if (s.outline)
-        addBox(lines, s.domainSize, width, {0.62f, 0.70f, 0.82f, 0.5f}, s.camera.eye(),
-               s.surface ? s.diameter : 0);
+    if (s.outline) lines.addBox(s.domainSize, outline, s.surface ? s.diameter : 0);
     for (size_t i = 0; i < s.solids.size(); ++i)
         for (const auto& [from, to] : solids_.shapes()[i].edges) {
-            // A little nearer to the eye than the faces that meet there.
-            const auto lifted = [&](Vec3 own) {
-                const Vec3 at = s.solids[i].at(own);
-                return at + 0.002f * (s.camera.eye() - at);
-            };
-            lines.push_back(
-                {pack(lifted(from), width), pack(lifted(to)), {0.10f, 0.11f, 0.14f, 0.8f}});
+            const Vec3 a = s.solids[i].at(from), b = s.solids[i].at(to);
+            if (s.clipSolids)
+                lines.addEdge(a, b, edge, s.clipLow, s.clipHigh);
+            else
+                lines.addEdge(a, b, edge);
         }
-    const auto edges = GLsizei(lines.size());
-    for (const Ring& ring : s.rings) addRing(lines, ring, s.camera, width);
-    if (lines.empty()) return;
-    glNamedBufferData(segments_, GLsizeiptr(lines.size() * sizeof(Segment)), lines.data(),
-                      GL_STREAM_DRAW);
+    if (s.slice) {
+        const Vec3 a = s.slice->corner, b = a + s.slice->across, c = b + s.slice->along,
+                   d = a + s.slice->along;
+        for (const auto& [from, to] : {std::pair{a, b}, {b, c}, {c, d}, {d, a}})
+            lines.addEdge(from, to, outline);
+    }
+    const int hidden = lines.count();
+    for (const Arrow& arrow : s.arrows) lines.addArrow(arrow);
+    for (const auto& [from, to] : s.path) lines.addMark(from, to);
+    for (const Ring& ring : s.rings) lines.addRing(ring);
+    if (s.axes) axisNames_ = lines.addAxes();
+    if (lines.count() == 0) return;
+    glNamedBufferData(segments_, GLsizeiptr(size_t(lines.count()) * sizeof(DrawnLine)),
+                      lines.all().data(), GL_STREAM_DRAW);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, segments_);
     glEnable(GL_BLEND);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     glDepthMask(GL_FALSE);
     glUseProgram(lines_);
     glBindVertexArray(empty_);
-    glUniform1i(0, 0);
-    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, edges);
+    drawSegments(0, hidden);
     // Rings are marks, seen through the fluid.
     glDisable(GL_DEPTH_TEST);
-    glUniform1i(0, edges);
-    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, GLsizei(lines.size()) - edges);
+    drawSegments(hidden, lines.count() - hidden);
     glDepthMask(GL_TRUE);
     glDisable(GL_BLEND);
+}
+
+void Renderer::drawSegments(int first, int count) {
+    glUniform1i(0, first);
+    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, count);
 }
 
 std::optional<Vec3> Renderer::surfaceAt(int x, int y) const {
     const float depth = target_.depth(x, y);
     if (depth >= 1) return std::nullopt;
-    const float n = camera_.nearPlane(), f = camera_.farPlane();
-    const float along = 2 * f * n / (f + n - (2 * depth - 1) * (f - n));
+    const float along = camera_.distanceAt(depth);
     return camera_.onPlane(float(x) + 0.5f, float(y) + 0.5f, float(width()), float(height()),
                            camera_.eye() + along * camera_.forward());
 }

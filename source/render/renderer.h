@@ -4,25 +4,26 @@
 #include "core/color_map.h"
 #include "core/vec.h"
 #include "render/camera.h"
+#include "render/color_map.h"
 #include "render/fluid_surface.h"
 #include "render/framebuffer.h"
 #include "render/image.h"
 #include "render/legend.h"
+#include "render/lines.h"
 #include "render/occlusion.h"
 #include "render/overlay.h"
+#include "render/slice.h"
 #include "render/solids.h"
 #include "render/vertex_buffer.h"
 
+#include <limits>
 #include <optional>
 #include <vector>
 
 namespace spindrift {
 
-struct Ring {
-    Vec3 center;
-    float radius;
-    Vec3 color;
-};  // m; faces the camera
+// Beyond all places and values.
+constexpr float nowhere = std::numeric_limits<float>::max();
 
 // One picture. Lengths in m, positions relative to the domain's lower corner.
 struct DrawSettings {
@@ -34,13 +35,26 @@ struct DrawSettings {
     float diameter = 0.02f;
     float minimumPixels = 0;  // particles are never drawn smaller than this
     bool surface = false;     // of the fluid instead of its particles
+    bool fluid = true;        // is drawn at all
     bool flat = false;        // fluid is one layer of particles
     bool plain = false;       // one colour instead of the table
     ColorMap map = ColorMap::Viridis;
+    ColorTable ownColors{};  // of ColorMap::File
     std::vector<Swatch>
         swatches;  // instead of the table: each value has the colour of the nearest of them
     float rangeMin = 0, rangeMax = 1;  // values at the ends of the table
+    bool logarithmic = false;          // colours between them; both are positive then
     std::optional<LegendText> legend;
+    Theme theme = Theme::Dark;
+    bool axes = false, scale = false;               // marks at the lower right
+    float shownMin = -nowhere, shownMax = nowhere;  // values of fluid that is shown
+    Vec3 clipLow{-nowhere, -nowhere, -nowhere},
+        clipHigh{nowhere, nowhere, nowhere};  // corners of the box of which fluid is shown
+    bool clipSolids = false;                  // and solids
+    const SliceField* slice = nullptr;
+    float contourStep = 0;  // between lines of one value on it, 0 = none
+    std::vector<Arrow> arrows;
+    std::vector<std::array<Vec3, 2>> path;  // pieces of it
     std::vector<Ring> rings;
     std::vector<ShapePose> solids;  // of the shapes that are drawn: all of setSolids, or none
 };
@@ -70,8 +84,11 @@ private:
     void drawParticles(const VertexBuffer&, const DrawSettings&);
     void drawSpheres(int first, int count, bool second);
     void drawFluidSurface(const DrawSettings&);
+    void drawSlice(const DrawSettings&);
     void drawLines(const DrawSettings&);
-    void uploadSwatches(const DrawSettings&);
+    void drawSegments(int first, int count);
+    void drawText(const DrawSettings&);
+    void uploadColors(const DrawSettings&);
 
     int samples_;  // as asked for; the driver may give fewer
     Framebuffer target_;
@@ -82,8 +99,10 @@ private:
     GlTexture tables_;
     Overlay overlay_;
     SolidTriangles solids_;
-    std::optional<FluidSurface> surface_;  // once it is asked for
-    OrbitCamera camera_;                   // of the last picture
+    std::optional<FluidSurface> surface_;              // once it is asked for
+    std::optional<SlicePlane> slice_;                  // likewise
+    std::array<std::array<float, 2>, 3> axisNames_{};  // px, of the last picture
+    OrbitCamera camera_;                               // of the last picture
 };
 
 }  // namespace spindrift

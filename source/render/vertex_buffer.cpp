@@ -50,4 +50,12 @@ void VertexBuffer::unmap() {
     mapped_ = Mapped::Not;
 }
 
+std::vector<Vertex> VertexBuffer::read(int count) const {
+    CHECK(!mapped() && count <= count_);
+    std::vector<Vertex> vertices(static_cast<size_t>(count));
+    if (count > 0)
+        glGetNamedBufferSubData(buffer_, 0, GLsizeiptr(sizeof(Vertex)) * count, vertices.data());
+    return vertices;
+}
+
 }  // namespace spindrift

@@ -5,6 +5,7 @@
 #include "render/gl.h"
 
 #include <optional>
+#include <vector>
 
 namespace spindrift {
 
@@ -24,6 +25,8 @@ public:
     bool mapped() const { return mapped_ != Mapped::Not; }
 
     GLuint name() const { return buffer_; }
+    // The first so many vertices.
+    std::vector<Vertex> read(int count) const;
 
 private:
     enum class Mapped { Not, Host, Device };

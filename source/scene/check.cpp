@@ -4,6 +4,7 @@
 #include "core/error.h"
 #include "core/system.h"
 #include "scene/check_methods.h"
+#include "scene/check_view.h"
 #include "scene/check_bodies.h"
 #include "scene/check_particle_files.h"
 #include "scene/convex.h"
@@ -368,10 +369,7 @@ void checkScene(const Scene& scene, const std::string& place, std::optional<Part
         checkSolids(scene);
         checkObjects(scene);
         for (size_t p = 0; p < scene.output.probes.size(); ++p) checkProbe(scene, p);
-        if (scene.view.range == RangeMode::Fixed && scene.view.rangeMin >= scene.view.rangeMax)
-            refuse("view.range_max",
-                   fmt::format("{} is not above view.range_min {}; make it larger",
-                               scene.view.rangeMax, scene.view.rangeMin));
+        checkView(scene);
         checkOutput(scene);
         checkCounts(scene, count);
         if (!begun) checkParticleFiles(scene);

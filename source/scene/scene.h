@@ -23,7 +23,27 @@ enum class Integrator { SymplecticEuler, VelocityVerlet, PredictorCorrector, Spl
 enum class Shape { Block, Sphere, Cylinder, Wedge, Plane, Mesh, File };
 enum class Axis { X, Y, Z };
 enum class Up { Auto, X, Y, Z, MinusX, MinusY, MinusZ };
-enum class ColorBy { Plain, Velocity, Pressure, Density, Acceleration, Id, Fluid, Surface };
+enum class ColorBy {
+    Plain,
+    Velocity,
+    Pressure,
+    Density,
+    Acceleration,
+    Id,
+    Fluid,
+    Surface,
+    VelocityX,
+    VelocityY,
+    VelocityZ,
+    Vorticity,
+    ShearRate,
+    Divergence,
+    Neighbours,
+    TimeBin
+};
+enum class ColorScale { Linear, Logarithmic };
+enum class Projection { Perspective, Orthographic };
+enum class Across { None, X, Y, Z };
 enum class DrawStyle { Spheres, Surface };
 enum class Field { Uniform, TaylorGreen, Stretching, Rotation, Shear, SoundWave, StandingWave };
 enum class StartPlaces { Lattice, Relaxed };
@@ -263,14 +283,50 @@ struct Stirrer {
     float radius = 0;    // m, 0 = an eighth of the domain's shortest side
 };
 
+// The box of which fluid is shown, in shares of the domain; 0 and 1 are as far as anything goes.
+struct Clip {
+    Vec3 min{0, 0, 0}, max{1, 1, 1};
+    bool solids = false;  // are cut as well
+};
+
+// A plane on which the coloured quantity is shown between the particles, across an axis.
+struct Slice {
+    Across axis = Across::None;
+    float position = 0.5f;  // along that, share of the domain
+    int contours = 0;       // lines of one value, about so many over the range
+    bool fluid = false;     // is drawn too
+};
+
+// Shows only fluid whose coloured quantity is within these, in its unit.
+struct Threshold {
+    bool on = false;
+    float min = 0, max = 1;
+};
+
+// Of velocity, at points of a grid.
+struct Arrows {
+    int count = 0;     // along the domain's longest side, 0 = none
+    float length = 1;  // of the longest / the grid's step
+};
+
 struct View {
     DrawStyle style = DrawStyle::Spheres;
     ColorBy colorBy = ColorBy::Velocity;
     ColorMap colorMap = ColorMap::Coolwarm;
+    std::string colorFile;  // of colour map file, beside the scene file when relative
+    ColorScale colorScale = ColorScale::Linear;
     RangeMode range = RangeMode::Run;
     float rangeMin = 0, rangeMax = 1;  // in the unit of the coloured quantity, used by fixed
-    bool showWalls = false;            // draws boundary particles
-    bool solidParticles = false;       // draws particles of solids instead of their shapes
+    Threshold threshold;
+    Clip clip;
+    Slice slice;
+    Arrows arrows;
+    int pathOf = -1;  // number of the particle whose path is drawn, -1 = none
+    Theme theme = Theme::Dark;
+    bool showAxes = false, showScale = false;
+    Projection projection = Projection::Perspective;
+    bool showWalls = false;       // draws boundary particles
+    bool solidParticles = false;  // draws particles of solids instead of their shapes
     bool showOutline = true, showGround = true;
     Up up = Up::Auto;         // the direction that is up in pictures
     float particleScale = 1;  // drawn diameter / spacing

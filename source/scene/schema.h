@@ -44,11 +44,19 @@ constexpr auto enumNames(Shape) {
 constexpr auto enumNames(Axis) { return std::array{"x", "y", "z"}; }
 constexpr auto enumNames(Up) { return std::array{"auto", "x", "y", "z", "-x", "-y", "-z"}; }
 constexpr auto enumNames(ColorBy) {
-    return std::array{"plain",        "velocity", "pressure", "density",
-                      "acceleration", "id",       "fluid",    "surface"};
+    return std::array{"plain",        "velocity",   "pressure",   "density",
+                      "acceleration", "id",         "fluid",      "surface",
+                      "velocity_x",   "velocity_y", "velocity_z", "vorticity",
+                      "shear_rate",   "divergence", "neighbours", "time_bin"};
 }
 constexpr auto enumNames(DrawStyle) { return std::array{"spheres", "surface"}; }
-constexpr auto enumNames(ColorMap) { return std::array{"viridis", "cividis", "turbo", "coolwarm"}; }
+constexpr auto enumNames(ColorMap) {
+    return std::array{"viridis", "cividis", "turbo", "coolwarm", "file"};
+}
+constexpr auto enumNames(ColorScale) { return std::array{"linear", "logarithmic"}; }
+constexpr auto enumNames(Theme) { return std::array{"dark", "light"}; }
+constexpr auto enumNames(Projection) { return std::array{"perspective", "orthographic"}; }
+constexpr auto enumNames(Across) { return std::array{"none", "x", "y", "z"}; }
 constexpr auto enumNames(Field) {
     return std::array{"uniform", "taylor_green", "stretching",   "rotation",
                       "shear",   "sound_wave",   "standing_wave"};
@@ -570,23 +578,86 @@ template <class S, class Visitor> void visitFluid(S& s, Visitor&& visit) {
     visit("fluid.wind", f.wind, Knob{"m/s", -1e3f, 1e3f, "velocity of that air"});
 }
 
-template <class S, class Visitor> void visitPicture(S& s, Visitor&& visit) {
-    auto& v = s.view;
+template <class V, class Visitor> void visitColors(V& v, Visitor&& visit) {
     visit("view.style", v.style,
           Knob{"", 0, 0,
                "fluid as its particles, or as a surface with light behind it; of one colour where "
                "color_by is plain"});
-    visit("view.color_by", v.colorBy, Knob{"", 0, 0, "what colours the particles"});
+    visit("view.color_by", v.colorBy,
+          Knob{"", 0, 0,
+               "what colours the particles; vorticity is signed in two dimensions, neighbours are "
+               "those within the support, time_bin is of local steps: -1 = at rest"});
     visit("view.color_map", v.colorMap, Knob{"", 0, 0, "table of colours"});
+    visit(
+        "view.color_file", v.colorFile,
+        Knob{"", 0, 0,
+             "of color_map file: .csv with columns r, g, b, of 0 to 255 or 0 to 1, or .json, a "
+             "list of [r, g, b] or a colour map as ParaView exports it; a relative path starts at "
+             "the scene file"});
+    visit("view.color_scale", v.colorScale,
+          Knob{"", 0, 0,
+               "colours by the quantity or by its logarithm, over four powers of ten at most "
+               "unless the range is fixed"});
     visit("view.range", v.range,
           Knob{"", 0, 0, "colour range: of each frame, of the run so far, or fixed"});
     visit("view.range_min", v.rangeMin,
           Knob{"", -1e9f, 1e9f, "fixed range, lower end, unit of the quantity"});
     visit("view.range_max", v.rangeMax,
           Knob{"", -1e9f, 1e9f, "fixed range, upper end, unit of the quantity"});
+    visit("view.theme", v.theme, Knob{"", 0, 0, "dark or light background and panel"});
+}
+
+// What of the fluid is shown, and what is drawn into it.
+template <class V, class Visitor> void visitInside(V& v, Visitor&& visit) {
+    visit("view.threshold.on", v.threshold.on,
+          Knob{"", 0, 0, "shows only fluid whose coloured quantity is from min to max"});
+    visit("view.threshold.min", v.threshold.min,
+          Knob{"", -1e9f, 1e9f, "least that is shown, unit of the quantity"});
+    visit("view.threshold.max", v.threshold.max,
+          Knob{"", -1e9f, 1e9f, "most that is shown, unit of the quantity"});
+    visit("view.clip.min", v.clip.min,
+          Knob{"", 0, 1,
+               "lower corner of the box of which fluid is shown, shares of the domain; 0 = all on "
+               "that side"});
+    visit("view.clip.max", v.clip.max, Knob{"", 0, 1, "its upper corner; 1 = all on that side"});
+    visit("view.clip.solids", v.clip.solids,
+          Knob{"", 0, 0, "cuts solids, elastic objects and boundary particles as well"});
+    visit("view.slice.axis", v.slice.axis,
+          Knob{"", 0, 0,
+               "axis across which a plane shows the coloured quantity between the particles, by "
+               "SPH interpolation"});
+    visit("view.slice.position", v.slice.position,
+          Knob{"", 0, 1, "of the plane along its axis, share of the domain"});
+    visit("view.slice.contours", v.slice.contours,
+          Knob{"", 0, 50,
+               "about how many lines of one value it has over the colour range, at round values"});
+    visit("view.slice.fluid", v.slice.fluid,
+          Knob{"", 0, 0, "draws the fluid as well; clip it to see the plane"});
+    visit("view.arrows.count", v.arrows.count,
+          Knob{"", 0, 100,
+               "arrows of velocity along the domain's longest side, of the fluid around points of "
+               "a grid, in the slice's plane where there is one; 0 = none"});
+    visit("view.arrows.length", v.arrows.length,
+          Knob{"", 0.1f, 10, "of the longest arrow / the grid's step"});
+    visit("view.path_of", v.pathOf,
+          Knob{"", -1, 1e9f,
+               "number of a fluid particle whose path is drawn, as of the first picture with it; "
+               "-1 = none. A double click sets it to the one that is picked"});
+}
+
+template <class S, class Visitor> void visitPicture(S& s, Visitor&& visit) {
+    auto& v = s.view;
+    visitColors(v, visit);
     visit("view.show_walls", v.showWalls, Knob{"", 0, 0, "draws the boundary particles"});
     visit("view.show_outline", v.showOutline, Knob{"", 0, 0, "draws the edges of the box"});
     visit("view.show_ground", v.showGround, Knob{"", 0, 0, "draws the ground"});
+    visit("view.show_axes", v.showAxes, Knob{"", 0, 0, "draws which way x, y and z are"});
+    visit("view.show_scale", v.showScale,
+          Knob{"", 0, 0,
+               "draws a bar of a known length, as it is where the camera looks, and says how large "
+               "the ground's cells are"});
+    visit("view.projection", v.projection,
+          Knob{"", 0, 0, "perspective, or orthographic: nothing gets smaller with distance"});
     visit(
         "view.up", v.up,
         Knob{"", 0, 0,
@@ -598,6 +669,8 @@ template <class S, class Visitor> void visitPicture(S& s, Visitor&& visit) {
     visit("view.speed", v.speed,
           Knob{"x real time", 0.01f, 10,
                "how fast the window plays: simulated seconds for one of the clock's"});
+
+    visitInside(v, visit);
 
     auto& stir = v.stir;
     visit("view.stir.mode", stir.mode,

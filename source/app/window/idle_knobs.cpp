@@ -1,4 +1,6 @@
 #include "app/window/idle_knobs.h"
+
+#include "app/frame.h"
 #include "scene/formulation.h"
 
 namespace spindrift {
@@ -55,14 +57,29 @@ const char* whyRestIsIdle(const Scene& s, const std::string& path) {
     const bool sticks = largestViscosity(s) > 0 || s.fluid.artificialViscosity > 0;
     if (path.starts_with("walls.slip") && !sticks) return "nothing sticks to walls: no viscosity";
     if (path.starts_with("contact.") && s.objects.empty()) return "there are no elastic objects";
-    const ColorBy by = s.view.colorBy;
-    const bool isNumber = by != ColorBy::Plain && by != ColorBy::Fluid && by != ColorBy::Surface;
-    if (path.starts_with("view.range") && !isNumber) return "what is shown is not a number";
-    if (path.starts_with("view.range_") && s.view.range != RangeMode::Fixed)
+    return "";
+}
+
+const char* whyViewIsIdle(const Scene& s, const std::string& path) {
+    const View& v = s.view;
+    const bool needsNumber = path.starts_with("view.range") || path.starts_with("view.threshold") ||
+                             path == "view.color_scale" || path == "view.slice.contours";
+    if (needsNumber && !isNumber(v.colorBy)) return "what is shown is not a number";
+    if (path.starts_with("view.range_") && v.range != RangeMode::Fixed)
         return "view.range is not fixed";
+    if (path.starts_with("view.threshold.m") && !v.threshold.on) return "view.threshold.on is off";
     if (path == "view.solid_particles" && s.solids.empty()) return "there are no solids";
-    if (path == "view.color_map" && !isNumber) return "what is shown has colours of its own";
-    if (path == "view.camera.target" && s.view.camera.automaticTarget)
+    if (path == "view.color_map" && !isNumber(v.colorBy))
+        return "what is shown has colours of its own";
+    if (path == "view.color_file" && v.colorMap != ColorMap::File)
+        return "view.color_map is not file";
+    if (path.starts_with("view.slice.") && path != "view.slice.axis" &&
+        v.slice.axis == Across::None)
+        return "view.slice.axis is none";
+    if (path == "view.slice.position" && s.simulation.dimensions == 2)
+        return "in two dimensions there is one layer";
+    if (path == "view.arrows.length" && v.arrows.count == 0) return "view.arrows.count is 0";
+    if (path == "view.camera.target" && v.camera.automaticTarget)
         return "view.camera.automatic_target is on";
     return "";
 }
@@ -70,7 +87,7 @@ const char* whyRestIsIdle(const Scene& s, const std::string& path) {
 }  // namespace
 
 std::string whyIdle(const Scene& scene, const std::string& path) {
-    for (const auto why : {whyTimeIsIdle, whyFluidIsIdle, whyRestIsIdle})
+    for (const auto why : {whyTimeIsIdle, whyFluidIsIdle, whyRestIsIdle, whyViewIsIdle})
         if (const std::string reason = why(scene, path); !reason.empty()) return reason;
     return "";
 }

@@ -18,11 +18,18 @@ const std::vector<Control> controls = {
     {"Middle drag, Shift + left drag", "pan"},
     {"Wheel", "zoom to the cursor"},
     {"Home", "first view"},
+    {"X  Y  Z", "look along x, y, z; with Shift from the other side"},
+    {"O", "perspective or orthographic"},
+    {"F5 to F8, with Shift", "show a view that was kept, keep this one"},
+    {"M", "ruler: from here to the mouse, there, away"},
     {"Ctrl + drag", "stir the fluid, or drag an obstacle"},
     {"Ctrl + wheel", "radius of the stirrer"},
     {"Double click", "pick a particle or an obstacle"},
     {"1  2  3  4", "plain, velocity, pressure, density"},
     {"S", "fluid as a surface or as particles"},
+    {"C", "slice across z, x, y, or none"},
+    {"[  ]", "move the slice"},
+    {"A", "arrows of velocity"},
     {"B", "boundary particles"},
     {"G", "CPU or GPU"},
     {"Tab", "panel"},
@@ -114,11 +121,89 @@ void changeStyle(Ui& ui) {
     ui.stale = true;
 }
 
+// Across z, x, y, none; across z or none in two dimensions.
+void changeSlice(Ui& ui) {
+    const Scene& scene = ui.player.scene;
+    Across& axis = ui.player.scene.view.slice.axis;
+    const Across first = scene.simulation.dimensions == 2 ? Across::None : Across::X;
+    axis = axis == Across::None ? Across::Z
+           : axis == Across::Z  ? first
+           : axis == Across::X  ? Across::Y
+                                : Across::None;
+    ui.stale = ui.rewrite = true;
+}
+
+// By this share of the domain.
+void moveSlice(Ui& ui, float by) {
+    float& position = ui.player.scene.view.slice.position;
+    position = std::clamp(position + by, 0.0f, 1.0f);
+    ui.stale = ui.rewrite = true;
+}
+
+void toggleArrows(Ui& ui) {
+    int& count = ui.player.scene.view.arrows.count;
+    count = count > 0 ? 0 : 24;
+    ui.stale = ui.rewrite = true;
+}
+
+void changeProjection(Ui& ui) {
+    Projection& projection = ui.player.scene.view.projection;
+    projection =
+        projection == Projection::Perspective ? Projection::Orthographic : Projection::Perspective;
+    ui.stale = true;
+}
+
+void lookAlong(Ui& ui, int axis) {
+    OrbitCamera camera = ui.camera();
+    Vec3 from{0, 0, 0};
+    from[axis] = ui.held & KMOD_SHIFT ? -1 : 1;
+    camera.lookFrom(from);
+    ui.moveCamera(camera);
+}
+
 // While the program asks whether to leave.
 void answer(Ui& ui, SDL_Keycode key) {
     if (key == SDLK_RETURN || key == SDLK_y || key == SDLK_q) ui.quit = true;
     if (key == SDLK_s) ui.quit = ui.saveCheckpoint();
     if (key == SDLK_s || key == SDLK_n || key == SDLK_ESCAPE) ui.asking = false;
+}
+
+// Keys that change what is seen only; whether this is one.
+bool pressViewKey(Ui& ui, SDL_Keycode key) {
+    View& view = ui.player.scene.view;
+    if (ui.held & KMOD_CTRL) return false;
+    if (key >= SDLK_1 && key <= SDLK_4)
+        return ui.colorBy(ColorBy(key - SDLK_1)), true;  // their order
+    if (key >= SDLK_x && key <= SDLK_z) return lookAlong(ui, key - SDLK_x), true;
+    if (key >= SDLK_F5 && key <= SDLK_F8) {
+        const auto bookmark = size_t(key - SDLK_F5);
+        ui.held& KMOD_SHIFT ? ui.keepView(bookmark) : ui.showView(bookmark);
+        return true;
+    }
+    switch (key) {
+        case SDLK_HOME:
+            return ui.resetCamera(), true;
+        case SDLK_b:
+            view.showWalls = !view.showWalls;
+            ui.stale = ui.rewrite = true;
+            return true;
+        case SDLK_s:
+            return changeStyle(ui), true;
+        case SDLK_m:
+            return ui.useRuler(underMouse(ui, ui.camera())), true;
+        case SDLK_o:
+            return changeProjection(ui), true;
+        case SDLK_c:
+            return changeSlice(ui), true;
+        case SDLK_LEFTBRACKET:
+            return moveSlice(ui, -0.025f), true;
+        case SDLK_RIGHTBRACKET:
+            return moveSlice(ui, 0.025f), true;
+        case SDLK_a:
+            return toggleArrows(ui), true;
+        default:
+            return false;
+    }
 }
 
 }  // namespace
@@ -127,7 +212,7 @@ void pressKey(Ui& ui, SDL_Keycode key) {
     if (ui.asking) return answer(ui, key);
     if (key == SDLK_MINUS || key == SDLK_KP_MINUS) return changeSpeed(ui, 0.5f);
     if (key == SDLK_PLUS || key == SDLK_EQUALS || key == SDLK_KP_PLUS) return changeSpeed(ui, 2);
-    View& view = ui.player.scene.view;
+    if (pressViewKey(ui, key)) return;
     switch (key) {
         case SDLK_SPACE:
             ui.toggleRun();
@@ -138,19 +223,6 @@ void pressKey(Ui& ui, SDL_Keycode key) {
         case SDLK_r:
             ui.reset();
             break;
-        case SDLK_HOME:
-            ui.resetCamera();
-            break;
-        case SDLK_1:  // in the order of ColorBy
-        case SDLK_2:
-        case SDLK_3:
-        case SDLK_4:
-            ui.colorBy(ColorBy(key - SDLK_1));
-            break;
-        case SDLK_b:
-            view.showWalls = !view.showWalls;
-            ui.stale = ui.rewrite = true;
-            break;
         case SDLK_g:
             ui.switchBackend();
             break;
@@ -160,14 +232,11 @@ void pressKey(Ui& ui, SDL_Keycode key) {
         case SDLK_F12:
             ui.screenshot = true;
             break;
-        case SDLK_s:
-            if (ui.held & KMOD_CTRL)
-                ui.saveCheckpoint();
-            else
-                changeStyle(ui);
+        case SDLK_s:  // with Ctrl, as the next one
+            ui.saveCheckpoint();
             break;
         case SDLK_z:
-            if (ui.held & KMOD_CTRL) ui.undo();
+            ui.undo();
             break;
         case SDLK_h:
         case SDLK_F1:
@@ -235,6 +304,7 @@ void handleEvent(Ui& ui, const SDL_Event& event) {
             moveTo(event.motion.x, event.motion.y);
             if (ui.sizing && ui.drag == Drag::None)
                 ui.stirCenter = underMouse(ui, ui.camera()), ui.stale = true;
+            if (ui.measuring) ui.stretchRuler(underMouse(ui, ui.camera()));
             dragMouse(ui, ui.mouseX - x, ui.mouseY - y);
             break;
         }

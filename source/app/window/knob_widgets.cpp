@@ -110,10 +110,9 @@ bool editKnobs(Scene& scene, const Scene& loaded, const std::string& group,
                 fmt::format("{}\n{}{}{}{}", knob.help, path, unit.empty() ? "" : ", ", unit,
                             idle.empty() ? "" : "\nno effect: " + idle);
             ImGui::AlignTextToFramePadding();
-            const ImVec4 mark{1.0f, 0.80f, 0.42f, 1},
-                text =
-                    ImGui::GetStyle().Colors[idle.empty() ? ImGuiCol_Text : ImGuiCol_TextDisabled];
-            ImGui::TextColored(differs ? mark : text, "%s", labelOf(path, group).c_str());
+            const ImVec4 text =
+                ImGui::GetStyle().Colors[idle.empty() ? ImGuiCol_Text : ImGuiCol_TextDisabled];
+            ImGui::TextColored(differs ? amber() : text, "%s", labelOf(path, group).c_str());
             if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", tip.c_str());
             if (differs) {
                 ImGui::SameLine(ImGui::GetContentRegionMax().x - widget - button);

@@ -21,7 +21,7 @@ namespace spindrift {
 namespace {
 
 constexpr float width = 340, margin = 12;  // px at scale 1
-const ImVec4 red{1.0f, 0.52f, 0.48f, 1}, amber{1.0f, 0.80f, 0.42f, 1};
+ImVec4 red() { return isLight() ? ImVec4{0.75f, 0.12f, 0.08f, 1} : ImVec4{1.0f, 0.52f, 0.48f, 1}; }
 
 template <class... T> void text(fmt::format_string<T...> format, T&&... values) {
     ImGui::TextUnformatted(fmt::format(format, std::forward<T>(values)...).c_str());
@@ -127,8 +127,9 @@ void speed(Ui& ui) {
     const bool late = ui.player.running && factor < 0.9 * double(wanted);
     ImGui::SetWindowFontScale(1.5f);
     const std::string shown = ui.player.running ? fmt::format("{:.2g} x", factor) : "paused";
-    ImGui::TextColored(late || !ui.player.running ? amber : ImGui::GetStyle().Colors[ImGuiCol_Text],
-                       "%s", shown.c_str());
+    ImGui::TextColored(
+        late || !ui.player.running ? amber() : ImGui::GetStyle().Colors[ImGuiCol_Text], "%s",
+        shown.c_str());
     ImGui::SetWindowFontScale(1);
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
@@ -160,7 +161,7 @@ void status(Ui& ui) {
     row("drawing", "{:.1f} ms a picture", ui.drawMs);
     if (ui.player.remarks().empty()) return;
     ImGui::PushTextWrapPos();
-    ImGui::TextColored(amber, "outside what the method is valid for:");
+    ImGui::TextColored(amber(), "outside what the method is valid for:");
     for (const Remark& r : ui.player.remarks()) ImGui::TextUnformatted(r.text.c_str());
     ImGui::PopTextWrapPos();
 }
@@ -172,7 +173,7 @@ void slowness(Ui& ui) {
     double each = 0;  // ms, a step
     for (const PassTime& t : ui.times)
         if (t.runs > 0) each += t.ms / double(t.runs);
-    ImGui::TextColored(amber, "can't keep up with the clock:");
+    ImGui::TextColored(amber(), "can't keep up with the clock:");
     if (m.dt > 0 && each > 0) text("a second takes {:.0f} steps of {:.2g} ms", 1 / m.dt, each);
     if (const std::string passes = slowestPasses(ui.times); !passes.empty()) text("{}", passes);
     std::optional<Remedy::How> taken;
@@ -196,10 +197,14 @@ void passTimes(const Ui& ui) {
 void curves(Ui& ui) {
     const History& h = ui.player.history();
     plot("energy", perDepth("J", h.dimensions).c_str(), h.time,
-         {{"total", h.total, IM_COL32(240, 240, 245, 255)},
-          {"kinetic", h.kinetic, IM_COL32(96, 180, 255, 255)},
-          {"potential", h.potential, IM_COL32(255, 190, 90, 255)}});
-    plot("mean density error", "", h.time, {{"", h.densityError, IM_COL32(120, 220, 150, 255)}});
+         {{"total", h.total, ImGui::GetColorU32(ImGuiCol_Text)},
+          {"kinetic", h.kinetic,
+           isLight() ? IM_COL32(20, 100, 190, 255) : IM_COL32(96, 180, 255, 255)},
+          {"potential", h.potential,
+           isLight() ? IM_COL32(190, 110, 0, 255) : IM_COL32(255, 190, 90, 255)}});
+    plot("mean density error", "", h.time,
+         {{"", h.densityError,
+           isLight() ? IM_COL32(20, 130, 60, 255) : IM_COL32(120, 220, 150, 255)}});
     if (ImGui::Button("Save curves as CSV", {-1, 0})) ui.saveCurves();
 }
 
@@ -240,6 +245,10 @@ void knobs(Ui& ui) {
                          [&](const std::string& path) { return inForce(ui, path); });
     };
     if (edited("View", "view", true)) ui.stale = ui.rewrite = true;
+    if (edited("Slice: C, [ and ]", "view.slice")) ui.stale = ui.rewrite = true;
+    if (edited("Clip box", "view.clip")) ui.stale = ui.rewrite = true;
+    if (edited("Thresholds", "view.threshold")) ui.stale = true;
+    if (edited("Arrows: A", "view.arrows")) ui.stale = ui.rewrite = true;
     if (edited("Stirrer: Ctrl + drag", "view.stir")) ui.stale = true;
     if (edited("Camera", "view.camera")) ui.stale = true;
     bool physics = edited("Fluid", "fluid", true);
@@ -310,7 +319,7 @@ void help(const Ui& ui) {
     if (ImGui::BeginTable("keys", 2, ImGuiTableFlags_SizingFixedFit))
         for (const Control& control : controls) {
             ImGui::TableNextColumn();
-            ImGui::TextColored(amber, "%s", control.keys);
+            ImGui::TextColored(amber(), "%s", control.keys);
             ImGui::TableNextColumn();
             ImGui::TextUnformatted(control.action);
         }
@@ -327,9 +336,9 @@ void notes(Ui& ui) {
     ImGui::PushTextWrapPos(float(ui.area.width) - 4 * edge);
     const std::string standing = standstillOf(ui), said = messageOf(ui);
     if (!standing.empty())
-        ImGui::TextColored(ui.player.halted.empty() ? amber : red, "%s", standing.c_str());
+        ImGui::TextColored(ui.player.halted.empty() ? amber() : red(), "%s", standing.c_str());
     if (!said.empty() && ui.message.error)
-        ImGui::TextColored(red, "%s", said.c_str());
+        ImGui::TextColored(red(), "%s", said.c_str());
     else if (!said.empty())
         ImGui::TextUnformatted(said.c_str());
     ImGui::PopTextWrapPos();
@@ -368,7 +377,7 @@ void pickedSolid(const Ui& ui) {
         return fmt::format("{:.4g}  {:.4g}  {:.4g}", v.x + 0.0, v.y + 0.0, v.z + 0.0);
     };
     beginPicked(ui, "solid", 350);
-    ImGui::TextColored(red, "%s", s.name.c_str());
+    ImGui::TextColored(red(), "%s", s.name.c_str());
     row("middle", "{} m", vec(s.position));
     row("velocity", "{} m/s", vec(s.velocity));
     row("spin", "{} rad/s", vec(s.spin));
@@ -386,7 +395,7 @@ void pickedParticle(Ui& ui) {
     if (!ui.picked) return;
     const Particle& p = *ui.picked;
     beginPicked(ui, "particle", 310);
-    ImGui::TextColored(red, "particle %d", p.id);
+    ImGui::TextColored(red(), "particle %d", p.id);
     row("position", "{:.4f}  {:.4f}  {:.4f} m", p.position.x, p.position.y, p.position.z);
     row("velocity", "{:.3f}  {:.3f}  {:.3f} m/s", p.velocity.x, p.velocity.y, p.velocity.z);
     row("speed", "{:.4g} m/s", length(p.velocity));

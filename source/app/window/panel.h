@@ -2,12 +2,17 @@
 // The Dear ImGui side: panel, help, messages.
 #include "app/window/ui.h"
 
+#include <imgui.h>
+
 #include <functional>
 
 namespace spindrift {
 
-// Dark theme and a readable font, both so many times their usual size. Again whenever that changes.
-void setUpPanel(float scale);
+// Colours and a readable font, both so many times their usual size. Again whenever that changes.
+void setUpPanel(float scale, Theme = Theme::Dark);
+bool isLight();
+// Of what differs or wants a look.
+ImVec4 amber();
 // The panel's width in the window's pixels, 0 when it's hidden.
 int panelWidth(const Ui&);
 // How far a run is being made ready, around this place of the window.

@@ -33,7 +33,7 @@ void drawCurve(const Axes& axes, const std::vector<float>& x, const Curve& curve
 // Lines at round numbers, which stand beside them.
 void drawGrid(const Axes& axes) {
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    const ImU32 line = IM_COL32(255, 255, 255, 24),
+    const ImU32 line = isLight() ? IM_COL32(0, 0, 0, 30) : IM_COL32(255, 255, 255, 24),
                 color = ImGui::GetColorU32(ImGuiCol_TextDisabled);
     const ImVec2 end{axes.corner.x + axes.size.x, axes.corner.y + axes.size.y};
     const std::vector<double> across = ticks(axes.xMin, axes.xMax, 4),

@@ -11,7 +11,7 @@ namespace spindrift {
 
 namespace {
 
-void setColors(ImGuiStyle& style) {
+void setDarkColors(ImGuiStyle& style) {
     ImGui::StyleColorsDark(&style);
     ImVec4* c = style.Colors;
     const ImVec4 accent{0.26f, 0.56f, 0.86f, 1}, field{0.17f, 0.19f, 0.23f, 1};
@@ -37,14 +37,27 @@ void setColors(ImGuiStyle& style) {
     c[ImGuiCol_HeaderActive] = faded(accent, 0.55f);
 }
 
+void setLightColors(ImGuiStyle& style) {
+    ImGui::StyleColorsLight(&style);
+    ImVec4* c = style.Colors;
+    c[ImGuiCol_WindowBg] = {0.945f, 0.950f, 0.960f, 1};
+    c[ImGuiCol_PopupBg] = {0.985f, 0.985f, 0.99f, 1};
+    c[ImGuiCol_Text] = {0.09f, 0.10f, 0.12f, 1};
+    c[ImGuiCol_TextDisabled] = {0.36f, 0.39f, 0.44f, 1};
+    c[ImGuiCol_FrameBg] = c[ImGuiCol_Button] = {0.855f, 0.870f, 0.895f, 1};
+}
+
 }  // namespace
 
-void setUpPanel(float scale) {
+bool isLight() { return ImGui::GetStyle().Colors[ImGuiCol_WindowBg].x > 0.5f; }
+ImVec4 amber() { return isLight() ? ImVec4{0.62f, 0.36f, 0, 1} : ImVec4{1.0f, 0.80f, 0.42f, 1}; }
+
+void setUpPanel(float scale, Theme theme) {
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr;
     ImGuiStyle& style = ImGui::GetStyle();
     style = {};
-    setColors(style);
+    theme == Theme::Light ? setLightColors(style) : setDarkColors(style);
     style.WindowRounding = 0;
     style.FrameRounding = style.GrabRounding = style.PopupRounding = 4;
     style.WindowPadding = {12, 12};

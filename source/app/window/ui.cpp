@@ -197,6 +197,40 @@ void Ui::resetCamera() {
     stale = true;
 }
 
+void Ui::keepView(size_t bookmark) {
+    bookmarks[bookmark] = player.scene.view.camera;
+    say(fmt::format("view kept: F{} shows it again", bookmark + 5));
+}
+
+void Ui::showView(size_t bookmark) {
+    if (!bookmarks[bookmark])
+        return say(fmt::format("no view is kept here: Shift + F{} keeps this one", bookmark + 5));
+    player.scene.view.camera = *bookmarks[bookmark];
+    stale = true;
+}
+
+void Ui::useRuler(Vec3 at) {
+    if (measuring)
+        measuring = false;
+    else if (ruler)
+        ruler.reset();
+    else
+        ruler = {at, at}, measuring = true;
+    if (measuring) say("measures from here to the mouse; M ends");
+    stale = true;
+}
+
+void Ui::stretchRuler(Vec3 to) {
+    (*ruler)[1] = to;
+    const Vec3 way = to - (*ruler)[0];
+    say(fmt::format("{:.4g} m: {:.4g}, {:.4g}, {:.4g}", length(way), way.x, way.y, way.z));
+    stale = true;
+}
+
+std::vector<std::array<Vec3, 2>> Ui::marks() const {
+    return ruler ? std::vector<std::array<Vec3, 2>>{*ruler} : std::vector<std::array<Vec3, 2>>{};
+}
+
 namespace {
 
 // Saves by save(path) under the first free name in this folder and returns the path; "" and a
@@ -270,7 +304,8 @@ void Ui::pick() {
     const bool inFront = seen && length(toDouble(*seen) + corner - origin) < nearest - 2 * radius;
     if (inFront) pickedSolid = player.simulation().solidAt(toDouble(*seen) + corner);
     if (pickedSolid >= 0) picked.reset();
-    stale = true;
+    player.scene.view.pathOf = picked ? picked->id : -1;
+    stale = rewrite = true;
 }
 
 void Ui::grab() {

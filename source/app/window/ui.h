@@ -61,6 +61,12 @@ struct Ui {
     bool grabWanted = false;       // if there is an obstacle at stirCenter
     Hold hold;  // of an obstacle that is dragged, its target seen from stirCenter
 
+    // A ruler from one place to another, m from the domain's lower corner; the second follows the
+    // mouse until it is put down.
+    std::optional<std::array<Vec3, 2>> ruler;
+    bool measuring = false;
+    std::array<std::optional<Camera>, 4> bookmarks;
+
     std::optional<std::array<float, 2>> pickAt;  // px within the area
     std::optional<Particle> picked;
     int pickedSolid = -1;
@@ -101,6 +107,11 @@ struct Ui {
     void take(Remedy::How);
     void colorBy(ColorBy);
     void resetCamera();
+    void keepView(size_t bookmark);
+    void showView(size_t bookmark);
+    // Begins to measure at a place, ends there, or puts the ruler away.
+    void useRuler(Vec3 at);
+    void stretchRuler(Vec3 to);
     void takeScreenshot();
     bool saveCheckpoint();
     void saveCurves();
@@ -108,6 +119,7 @@ struct Ui {
     void grab();           // likewise
     void refreshPicked();  // likewise
     std::vector<Ring> rings() const;
+    std::vector<std::array<Vec3, 2>> marks() const;
 
 private:
     void take(const Remedy&);

@@ -85,10 +85,10 @@ struct Gui {
     Gui& operator=(const Gui&) = delete;
 
     // Between pictures.
-    void setScale(float scale) {
-        if (scale == scale_) return;
-        scale_ = scale;
-        setUpPanel(scale);
+    void setLook(float scale, Theme theme) {
+        if (scale == scale_ && theme == theme_) return;
+        scale_ = scale, theme_ = theme;
+        setUpPanel(scale, theme);
         ImGui_ImplOpenGL3_DestroyFontsTexture();
         ImGui_ImplOpenGL3_CreateFontsTexture();
     }
@@ -111,6 +111,7 @@ struct Gui {
 
 private:
     float scale_ = 0;
+    Theme theme_ = Theme::Dark;
 };
 
 // The window's pixels for one unit of the mouse.
@@ -143,7 +144,7 @@ struct Left {};
 // Makes the first run ready while the window shows how far that is.
 Loaded loadFirst(const Screen& screen, Gui& gui, Start start) {
     start.scene = onDrawingDevice(std::move(start.scene));
-    gui.setScale(interfaceScale(screen.window, start.scene));
+    gui.setLook(interfaceScale(screen.window, start.scene), start.scene.view.theme);
     Loader loader([&] { return std::move(start); });
     while (!loader.done()) {
         for (SDL_Event event; SDL_PollEvent(&event);)
@@ -224,7 +225,7 @@ private:
     void followWindow() {
         setFullScreen();
         ui_.scale = interfaceScale(screen_.window, ui_.player.scene);
-        gui_.setScale(ui_.scale);
+        gui_.setLook(ui_.scale, ui_.player.scene.view.theme);
         int width = 1, height = 1;
         SDL_GL_GetDrawableSize(screen_.window, &width, &height);
         ui_.density = densityOf(screen_.window);
@@ -323,7 +324,7 @@ private:
         // Smoothing doubles the time of a software picture, so it waits until nothing moves.
         const bool moving = ui_.player.running || ui_.drag != Drag::None;
         ui_.frame.setSamples(software_ && moving ? 1 : samples_);
-        ui_.frame.draw(ui_.player.scene, ui_.rings());
+        ui_.frame.draw(ui_.player.scene, ui_.rings(), ui_.marks());
         glFinish();
         pictureEnd_ = uiTime();
         ui_.drawMs = 1e3 * (pictureEnd_ - begin);

@@ -117,6 +117,16 @@ public:
                               v.fluidNearWalls.cellStart, false,
                               {v.screens, Between::WallsAndFluid, v.walls, v.fluid});
     }
+    // All of the fluid's, each pair from both sides, for as long as `use` takes: for pictures,
+    // where steps have half of them or leave out what rests. `use` is called with a view of them.
+    template <class Use> void amongFluid(View v, const Use& use) {
+        NeighbourLists all;
+        all.invalidate(v.fluid);
+        all.build(device_, grid_, reach_, boxes_, nullptr, boxes_, v.fluidNearFluid.cellStart,
+                  false, {v.screens, Between::Fluid, v.fluid, v.fluid});
+        v.fluidNearFluid.lists = all.data();
+        use(v);
+    }
     // Of walls among themselves, for as long as `use` takes: their masses are of it alone.
     template <class Use>
     void amongWalls(ParticleSet<Device>& walls, float support, const Use& use) {

@@ -31,9 +31,19 @@ struct PressureValue {
 struct FluidValue {
     HD static real of(const Particles& p, int i) { return massRatio(p, i); }
 };
-struct SurfaceValue {
+template <int axis> struct VelocityComponent {
+    HD static real of(const Particles& p, int i) {
+        const Vector<real> u = load(p.velocity, i);
+        return axis == 0 ? u.x : axis == 1 ? u.y : u.z;
+    }
+};
+struct TimeBinValue {
+    HD static real of(const Particles& p, int i) { return p.timeBin.data ? load(p.timeBin, i) : 0; }
+};
+// What a pass over neighbours has left there for the picture.
+struct FoundValue {
     HD static real of(const Particles& p, int i) { return load(p.normalLength, i); }
-};  // after LeaveOutSpray
+};
 struct IdValue {
     HD static real of(const Particles& p, int i) { return real(p.id[i]); }
 };

@@ -4,6 +4,7 @@
 #include "sim/step/flow.h"
 #include "sim/particles/output_passes.h"
 #include "sim/physics/surface.h"
+#include "sim/physics/velocity_gradient.h"
 
 #include <algorithm>
 #include <numeric>
@@ -46,12 +47,39 @@ template <class Value, class Device> Range write(Device& device, const Particles
 // Found when a picture asks. (With block time steps not where fluid rests: lists are missing
 // there.)
 template <class Device> Range writeSurface(Flow<Device>& flow, Vertex* out) {
-    flow.showsSurface = true;
-    flow.addBuffers();
     flow.template onPairsOrFluid<ComputeNormals>();
     flow.template onFluid<TagSurface>();
     flow.template onPairsOrFluid<LeaveOutSpray>();
-    return write<SurfaceValue>(flow.device, flow.fluid.view(), out);
+    return write<FoundValue>(flow.device, flow.fluid.view(), out);
+}
+
+// Of what the pass finds for each particle from all its neighbours.
+template <class Pass, class Device> Range writeFound(Flow<Device>& flow, Vertex* out) {
+    flow.search.amongFluid(flow.view(), [&](const View& v) {
+        if constexpr (requires { typename Pass::Parameters; })
+            flow.device.forEach(flow.fluid.slots(), Pass{v, Pass::Parameters::of(flow.model)});
+        else
+            flow.device.forEach(flow.fluid.slots(), Pass{v});
+    });
+    return write<FoundValue>(flow.device, flow.fluid.view(), out);
+}
+
+// What asks for neighbours.
+template <class Device> Range writeFoundOf(Flow<Device>& flow, Vertex* out, ColorBy by) {
+    flow.showsFound = true;
+    flow.addBuffers();
+    switch (by) {
+        case ColorBy::Surface:
+            return writeSurface(flow, out);
+        case ColorBy::Vorticity:
+            return writeFound<FromVelocityGradient<VorticityOf>>(flow, out);
+        case ColorBy::ShearRate:
+            return writeFound<FromVelocityGradient<ShearRateOf>>(flow, out);
+        case ColorBy::Divergence:
+            return writeFound<FromVelocityGradient<DivergenceOf>>(flow, out);
+        default:
+            return writeFound<CountNeighbours>(flow, out);
+    }
 }
 
 template <class Device> Range writeFluid(Flow<Device>& flow, Vertex* out, ColorBy by) {
@@ -72,8 +100,20 @@ template <class Device> Range writeFluid(Flow<Device>& flow, Vertex* out, ColorB
             return write<IdValue>(device, p, out);
         case ColorBy::Fluid:
             return write<FluidValue>(device, p, out);
+        case ColorBy::VelocityX:
+            return write<VelocityComponent<0>>(device, p, out);
+        case ColorBy::VelocityY:
+            return write<VelocityComponent<1>>(device, p, out);
+        case ColorBy::VelocityZ:
+            return write<VelocityComponent<2>>(device, p, out);
+        case ColorBy::TimeBin:
+            return write<TimeBinValue>(device, p, out);
         case ColorBy::Surface:
-            return writeSurface(flow, out);
+        case ColorBy::Vorticity:
+        case ColorBy::ShearRate:
+        case ColorBy::Divergence:
+        case ColorBy::Neighbours:
+            return writeFoundOf(flow, out, by);
     }
     return {0, 0};
 }

@@ -13,7 +13,8 @@ template <class R> struct Correction {
     Symmetric<R> inverse;  // of M
     R determinant;         // of M: 1 with neighbours all around, about a third at a flat surface
     R perTrace;            // d / trace of M
-    HD Correction(const StepParameters& c, const Symmetric<R>& sums) {
+    // `least`: determinant from which on it corrects; forces are content with this.
+    HD Correction(const StepParameters& c, const Symmetric<R>& sums, real least = real(0.1)) {
         const R scale = -c.gradientScale;
         Symmetric<R> m{scale * sums.xx, scale * sums.yy, scale * sums.zz,
                        scale * sums.xy, scale * sums.xz, scale * sums.yz};
@@ -22,8 +23,8 @@ template <class R> struct Correction {
         const R xx = m.yy * m.zz - m.yz * m.yz, xy = m.xz * m.yz - m.xy * m.zz,
                 xz = m.xy * m.yz - m.xz * m.yy;
         const R det = m.xx * xx + m.xy * xy + m.xz * xz, one = 1, zero = 0;
-        const auto solvable = det > R(real(0.1));
-        const R d = one / max(det, R(real(0.1)));
+        const auto solvable = det > R(least);
+        const R d = one / max(det, R(least));
         determinant = det;
         inverse = {select(solvable, d * xx, one),
                    select(solvable, d * (m.xx * m.zz - m.xz * m.xz), one),

@@ -170,7 +170,7 @@ template <class Device> struct Flow {
     void uploadWalls() { walls.upload(wallsAtHome, {}, {}, fluidCount); }
     void addBuffers() {
         fluid.addForces(usesHalfLists() && hasMixingForces(scene),
-                        scene.fluid.surfaceTension > 0 || showsSurface);
+                        scene.fluid.surfaceTension > 0 || showsFound);
     }
 
     Device device;
@@ -188,7 +188,7 @@ template <class Device> struct Flow {
     Buffer<StepState, Device> clock{device};
     double stop = std::numeric_limits<double>::quiet_NaN();  // the clock's, once it has been set
     Buffer<Extremes, Device> extremes{device};
-    bool showsSurface = false;  // a picture has asked
+    bool showsFound = false;  // a picture has asked for what neighbours tell
     // What parts show to all passes.
     SolidState* solids = nullptr;
     int solidCount = 0;

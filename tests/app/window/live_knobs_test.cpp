@@ -113,14 +113,29 @@ TEST(IdleKnobs, OfTheViewGoByWhatIsShown) {
         for (const char* path : {"view.range", "view.color_map"})
             EXPECT_EQ(whyIdle(scene, path).empty(), by == ColorBy::Velocity) << path << int(by);
     }
+    for (const char* path : {"view.slice.position", "view.slice.contours", "view.slice.fluid",
+                             "view.threshold.min", "view.arrows.length", "view.color_file"})
+        EXPECT_NE(whyIdle(scene, path), "") << path;
+    scene.view.slice.axis = Across::X, scene.view.threshold.on = true;
+    scene.view.arrows.count = 5, scene.view.colorMap = ColorMap::File;
+    for (const char* path : {"view.slice.position", "view.slice.contours", "view.slice.fluid",
+                             "view.threshold.min", "view.arrows.length", "view.color_file"})
+        EXPECT_EQ(whyIdle(scene, path), "") << path;
 }
 
 // The panel is drawn over the one before.
 TEST(Panel, LetsNothingShowThrough) {
     ImGui::CreateContext();
-    setUpPanel(1);
-    for (const int background : {ImGuiCol_WindowBg, ImGuiCol_PopupBg})
-        EXPECT_EQ(ImGui::GetStyle().Colors[background].w, 1);
+    for (const Theme theme : {Theme::Dark, Theme::Light}) {
+        setUpPanel(1, theme);
+        for (const int background : {ImGuiCol_WindowBg, ImGuiCol_PopupBg})
+            EXPECT_EQ(ImGui::GetStyle().Colors[background].w, 1);
+        EXPECT_EQ(isLight(), theme == Theme::Light);
+        // What is written can be read.
+        const ImVec4 paper = ImGui::GetStyle().Colors[ImGuiCol_WindowBg];
+        for (const ImVec4 ink : {ImGui::GetStyle().Colors[ImGuiCol_Text], amber()})
+            EXPECT_GT(std::abs(ink.y - paper.y), 0.45f) << int(theme);
+    }
     ImGui::DestroyContext();
 }
 

@@ -47,5 +47,20 @@ TEST(Interpolate, OneNeighbourGivesItsValueNoneNothing) {
     EXPECT_EQ(f[1].pressure, 0);
 }
 
+TEST(Interpolate, OneQuantityAloneIsTheSame) {
+    for (int dimensions : {1, 2, 3}) {
+        const std::vector<Particle> particles = cloud(dimensions);
+        std::vector<Sample> samples;
+        for (const Particle& p : particles) samples.push_back({p.position, p.pressure});
+        const std::vector<Vec3d> points = {{0.4, 0.5, 0.5}, {0.01, 0.5, 0.5}, {5, 0, 0}};
+        const auto fields = interpolate(particles, points, 0.3, Order::Mean);
+        const auto alone = interpolate(samples, PointsNear(points, 0.3));
+        for (size_t i = 0; i < points.size(); ++i)
+            EXPECT_NEAR(alone[i].value, fields[i].pressure, 1e-12);
+        EXPECT_GT(alone[0].weight, 1);
+        EXPECT_EQ(alone[2].weight, 0);
+    }
+}
+
 }  // namespace
 }  // namespace spindrift

@@ -62,8 +62,9 @@ TEST(Schema, EveryFieldOfASceneHasItsLine) {
         fieldCount<Scene>() - structs + fieldCount<Window>() + fieldCount<Compute>() +
         fieldCount<SimulationKnobs>() + fieldCount<Domain>() + fieldCount<Walls>() +
         fieldCount<Contact>() + fieldCount<Fluid>() - 1 /* bodies */ + fieldCount<TimeKnobs>() +
-        fieldCount<Solver>() + fieldCount<View>() - 2 /* camera and stirrer */ +
-        fieldCount<Camera>() + fieldCount<Stirrer>() + fieldCount<Output>() - 1 /* probes */;
+        fieldCount<Solver>() + fieldCount<View>() - 6 /* structs of its own */ +
+        fieldCount<Camera>() + fieldCount<Stirrer>() + fieldCount<Clip>() + fieldCount<Slice>() +
+        fieldCount<Threshold>() + fieldCount<Arrows>() + fieldCount<Output>() - 1 /* probes */;
     EXPECT_EQ(knobCount(scene), fields);
 
     EXPECT_EQ(memberKnobs<Body>(),
@@ -126,7 +127,10 @@ struct Change {
         v += " \"new\" \\ \n\t \xc3\xbc // no comment";
     }
     void operator()(const std::string&, Vec3& v, const Knob& k) const {
+        const Vec3 before = v;
         v = v + Vec3{0.1f, 1e-7f, std::max(-12.3456789f, 0.7f * k.min)};
+        for (int i = 0; i < 3; ++i)
+            if (v[i] > k.max) v[i] = before[i] - 0.1f;
     }
     void operator()(const std::string&, Vec3d& v, const Knob&) const {
         v = v + Vec3d{0.1, 1e-17, -500123.45678901234};
