@@ -60,6 +60,12 @@ constexpr Quantity SolveQuantities[] = {
     {"solve_error", "1", [](const Measurement& m) { return m.solve.error; }},
 };
 
+// Where fluid comes and goes, since the beginning.
+constexpr Quantity SourceQuantities[] = {
+    {"mass_in", "kg", [](const Measurement& m) { return m.massIn; }, true},
+    {"mass_out", "kg", [](const Measurement& m) { return m.massOut; }, true},
+};
+
 struct SolidQuantity {
     const char *name, *unit;
     Vec3d SolidMeasurement::*of;
@@ -81,6 +87,8 @@ template <class F> void forValues(const Measurement& m, const F& f) {
     for (const Quantity& q : Quantities) f(q.name, unitOf(q), q.of(m));
     if (m.solvesPressure)
         for (const Quantity& q : SolveQuantities) f(q.name, unitOf(q), q.of(m));
+    if (m.comesAndGoes)
+        for (const Quantity& q : SourceQuantities) f(q.name, unitOf(q), q.of(m));
     for (const SolidMeasurement& s : m.solids)
         for (const SolidQuantity& q : SolidQuantities)
             for (int k = 0; k < 3; ++k)

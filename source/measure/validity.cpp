@@ -183,6 +183,12 @@ void Validity::look(const Measurement& m) {
                            "solver.iterations or lower time.cfl",
                            m.solve.failures, m.steps),
                m.time);
+    if (m.massMissed > 0)
+        remark(fmt::format("sources: from {:.4g} s on they give less than they are to, because the "
+                           "domain is full, or the run goes on beyond output.time; let fluid out "
+                           "by sinks, or set stop or volume",
+                           m.time),
+               m.time);
     if (m.maxSpeed > MostMach * m.soundSpeed && !m.solvesPressure)
         remark(fmt::format("Mach number: {:.2g} at {:.4g} s, above {:g}; set fluid.sound_speed to "
                            "{:.2g} m/s or more",

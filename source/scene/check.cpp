@@ -5,6 +5,7 @@
 #include "core/system.h"
 #include "scene/check_methods.h"
 #include "scene/check_bodies.h"
+#include "scene/check_sources.h"
 #include "scene/convex.h"
 #include "scene/formulation.h"
 #include "scene/json.h"
@@ -16,6 +17,7 @@
 #include "scene/particle_spacing.h"
 #include "scene/sample_object.h"
 #include "scene/schema.h"
+#include "scene/sources.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -431,8 +433,9 @@ void checkProbe(const Scene& scene, size_t index) {
 void checkCounts(const Scene& scene, ParticleCount count) {
     const std::string what = fmt::format(
         "{} fluid and {} boundary particles{}", count.fluid, count.walls,
-        scene.objects.empty() ? ""
-                              : fmt::format(", {:.0f} of objects", countObjectParticles(scene)));
+        comesAndGoes(scene)     ? " at most"
+        : scene.objects.empty() ? ""
+                                : fmt::format(", {:.0f} of objects", countObjectParticles(scene)));
     const char* remedy = "raise simulation.spacing or shrink the bodies and the domain";
     if (count.fluid > MostParticles || count.walls > MostParticles - count.fluid)
         throw Error(
@@ -460,10 +463,11 @@ void checkScene(const Scene& scene, const std::string& place, std::optional<Part
     try {
         checkDomain(scene);
         checkMethods(scene);
-        if (scene.fluid.bodies.empty())
+        if (scene.fluid.bodies.empty() && scene.sources.empty())
             refuse("fluid.bodies", "is empty; add a body of fluid, e.g. {\"shape\": \"block\"}");
         for (size_t b = 0; b < scene.fluid.bodies.size(); ++b) checkBody(scene, b);
         checkMeshes(scene);
+        checkSources(scene);
         const ParticleCount count = begun ? *begun : countBodies(scene);
         checkFills(scene, count);
         checkMovingFace(scene);
@@ -478,7 +482,7 @@ void checkScene(const Scene& scene, const std::string& place, std::optional<Part
                    fmt::format("{} is not above view.range_min {}; make it larger",
                                scene.view.rangeMax, scene.view.rangeMin));
         checkOutput(scene.output);
-        checkCounts(scene, count);
+        checkCounts(scene, {mostFluid(scene, count.fluid), count.walls});
         if (!begun) checkParticleFiles(scene);
     } catch (const Error& error) {
         throw Error(error.failure, fmt::format("{}: {}", place, error.what()));

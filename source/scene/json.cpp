@@ -142,6 +142,7 @@ Scene loadScene(const std::string& file) {
     for (Body& body : scene.fluid.bodies) findBeside(body.path);
     for (Solid& solid : scene.solids) findBeside(solid.path);
     for (Object& object : scene.objects) findBeside(object.path);
+    for (Source& source : scene.sources) findBeside(source.path);
     return scene;
 }
 

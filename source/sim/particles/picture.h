@@ -36,7 +36,8 @@ inline Range withoutOutliers(ValueRange range, const std::vector<int>& counts, b
     return {range.low + bin * float(low), std::min(range.high, range.low + bin * float(high + 1))};
 }
 
-template <class Value, class Device> Range write(Device& device, const Particles& p, Vertex* out) {
+template <class Value, class Device>
+Range write(Device& device, const Particles& p, VertexPlaces out) {
     const auto range = device.template sum<ValueRange>(p.slots, WriteVertices<Value>{p, out});
     if (!(range.high > range.low)) return {range.low, range.high};
     const std::vector<int> counts = device.histogram(p.slots, CountValues<Value>{p, range});
@@ -45,7 +46,7 @@ template <class Value, class Device> Range write(Device& device, const Particles
 
 // Found when a picture asks. (With block time steps not where fluid rests: lists are missing
 // there.)
-template <class Device> Range writeSurface(Flow<Device>& flow, Vertex* out) {
+template <class Device> Range writeSurface(Flow<Device>& flow, VertexPlaces out) {
     flow.showsSurface = true;
     flow.addBuffers();
     flow.template onPairsOrFluid<ComputeNormals>();
@@ -54,7 +55,7 @@ template <class Device> Range writeSurface(Flow<Device>& flow, Vertex* out) {
     return write<SurfaceValue>(flow.device, flow.fluid.view(), out);
 }
 
-template <class Device> Range writeFluid(Flow<Device>& flow, Vertex* out, ColorBy by) {
+template <class Device> Range writeFluid(Flow<Device>& flow, VertexPlaces out, ColorBy by) {
     const Particles p = flow.fluid.view();
     Device& device = flow.device;
     switch (by) {

@@ -45,6 +45,8 @@ struct Part {
     void move(Plan&, ShareOfStep) {}
     void addRates(Plan&) {}
     void collide(Plan&) {}
+    // After accelerations, those by pressure or shifts were found: what doesn't follow them.
+    void holdBack(Plan&, Initial) {}
 };
 
 }  // namespace spindrift::LANES

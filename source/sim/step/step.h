@@ -105,6 +105,7 @@ private:
         add("equation of state", onFluid<ApplyEquationOfState>);
         add("walls", wallPass(), Initial::No, whyNoWallPressure());
         add("pressure", onFluid<ComputeForces<K, inner, TermList<PressureForce>, Forces::Alone>>);
+        holdBack(Initial::No);
         plan_.add(
             "extremes", [&flow = flow_] { boundSplitMove(flow); }, Initial::No,
             keepsLists ? "" : noLists);
@@ -115,12 +116,14 @@ private:
     void incompressible() {
         evaluateForces(Initial::Yes);
         add("gradients", onPairsOrFluid<SumGradients<K, inner>>);
+        holdBack(Initial::No);
         chooseStep();
         add("kick", onFluid<Integrate<Kick>>);
         add("source", onPairsOrFluid<FindSource<K, inner>>);
         plan_.add("begin solve", [&solver = solver_] { solver.begin(); });
         plan_.beginLoop();
         add("pressure forces", onPairsOrFluid<AccelerateByPressure<K, inner>>);
+        holdBack(Initial::No);
         add("relax pressure", onPairsOrFluid<RelaxPressure<K, inner>>);
         plan_.add("error", [&solver = solver_] { solver.findError(); });
         plan_.endLoop([&solver = solver_] { return !solver.goesOn(); }, solver_.goesOnFlag());
@@ -186,6 +189,10 @@ private:
             initial, whyViscosityIsNotWeighed(flow_));
         add("forces", forcePass(), initial);
         addPartForces(initial, false);
+        if (!solves()) holdBack(initial);
+    }
+    void holdBack(Initial initial) {
+        forEachPart(parts_, [&](auto& part) { part.holdBack(plan_, initial); });
     }
     // Of parts that feel the fluid's pressure when that is known: after it has been solved for.
     void addPartForces(Initial initial, bool isSolved) {
@@ -232,6 +239,7 @@ private:
     void addRate() {
         forEachPart(parts_, [&](auto& part) { part.addRates(plan_); });
         add(shiftsParticles(scene_) ? "transport" : "density rate", ratePass());
+        if (shiftsParticles(scene_)) holdBack(Initial::No);
     }
     void end() {
         noteTerms(OptionalTerms{});
