@@ -2,6 +2,7 @@
 
 #include "scene/formulation.h"
 #include "scene/particles.h"
+#include "scene/sources.h"
 
 #include <fmt/format.h>
 
@@ -29,7 +30,7 @@ double mostSoundSpeed(const Scene& scene) {
 double leastStep(const Scene& scene) {
     const double h = supportRadius(scene) / 2;
     double nu = 0;
-    for (const Body& body : scene.fluid.bodies)
+    for (const Body& body : fluidsOf(scene.fluid))
         nu = std::max(nu, double(viscosity(scene, body)) / restDensity(scene, body));
     const double sound = scene.time.cfl * h / (4 * mostSoundSpeed(scene)),
                  viscous = nu > 0 ? 0.125 * h * h / nu : sound;

@@ -145,7 +145,7 @@ bool isMultiFluid(const Scene& scene) {
 }
 float largestViscosity(const Scene& scene) {
     float most = 0;
-    for (const Body& body : scene.fluid.bodies) most = std::max(most, viscosity(scene, body));
+    for (const Body& body : fluidsOf(scene.fluid)) most = std::max(most, viscosity(scene, body));
     return most;
 }
 

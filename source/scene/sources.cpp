@@ -118,6 +118,10 @@ void closeAt(double way, std::vector<SourceKey>& keys) {
 
 }  // namespace
 
+std::vector<Body> fluidsOf(const Fluid& fluid) {
+    return fluid.bodies.empty() ? std::vector<Body>{Body{}} : fluid.bodies;
+}
+
 std::string nameOf(const Scene& scene, const Source& source) {
     return source.name.empty() ? fmt::format("sources[{}]", &source - scene.sources.data())
                                : source.name;
@@ -132,7 +136,7 @@ double SourceLattice::largestShare() const {
 SourceLattice latticeOf(const Scene& scene, const Source& source) {
     SourceLattice out;
     const Axes axes = axesOf(scene, source);
-    out.normal = axes.normal;
+    out.normal = axes.normal, out.across = axes.across, out.up = axes.up;
     source.mouth == Mouth::Rectangle ? addRectangle(scene, source, axes, out)
                                      : addDisc(scene, source, axes, out);
     double all = 0;

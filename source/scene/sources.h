@@ -9,6 +9,9 @@
 
 namespace spindrift {
 
+// What fluids a scene has: those of its bodies, or where all comes from sources its own.
+std::vector<Body> fluidsOf(const Fluid&);
+
 // A source's name in messages: its own, or sources[0], sources[1], ...
 std::string nameOf(const Scene&, const Source&);
 
@@ -21,9 +24,9 @@ struct SourceLattice {
         double share = 1;  // of the mean velocity
     };
     std::vector<Point> points;
-    Vec3d normal;      // of length 1, to where the fluid goes
-    double apart = 0;  // m, along the normal
-    double area = 0;   // m², in two dimensions m: of the mouth
+    Vec3d normal, across, up;  // of length 1: to where the fluid goes, along width and height
+    double apart = 0;          // m, along the normal
+    double area = 0;           // m², in two dimensions m: of the mouth
     int layers = 0;
 
     double depth() const { return layers * apart; }  // m, behind the mouth, that is held

@@ -45,6 +45,9 @@ struct Part {
     void move(Plan&, ShareOfStep) {}
     void addRates(Plan&) {}
     void collide(Plan&) {}
+    // Where pressure follows from density, between the two, or after it where it is summed up with
+    // it.
+    void borrowPressure(Plan&, Initial) {}
     // After accelerations, those by pressure or shifts were found: what doesn't follow them.
     void holdBack(Plan&, Initial) {}
 };

@@ -81,6 +81,26 @@ public:
             "sources and sinks", [this] { comeAndGo(); }, Initial::No,
             any() ? "" : "there are none");
     }
+    void refresh() {
+        withCompiledKernel(flow_.scene.simulation.kernel, [&](auto kernel) {
+            using K = decltype(kernel);
+            constexpr Lists inner = buildsInner ? Lists::Inner : Lists::All;
+            borrow_ = carriesDensity(flow_.scene)
+                          ? &Flow<Device>::template onFluid<BorrowPressure<K, Lists::All, true>>
+                          : &Flow<Device>::template onPairsOrFluid<BorrowPressure<K, inner, false>>;
+        });
+    }
+    void borrowPressure(Plan& plan, Initial initial) {
+        if (points_.size() == 0 || factsOf(flow_.scene).solvesPressure) return;
+        plan.add(
+            "pressure before mouths",
+            [this] {
+                (flow_.*borrow_)();
+                carriesDensity(flow_.scene) ? onSlots(TakePressure<true>{flow_.view()})
+                                            : onSlots(TakePressure<false>{flow_.view()});
+            },
+            carriesDensity(flow_.scene) ? Initial::No : initial);  // a state has it already
+    }
     void holdBack(Plan& plan, Initial initial) {
         if (points_.size() == 0) return;
         plan.add(
@@ -94,13 +114,23 @@ private:
         const Scene& scene = flow_.scene;
         const SourceLattice lattice = latticeOf(scene, source);
         const std::vector<SourceKey> own = scheduleOf(scene, source);
-        const Vector<real> normal = toVector(toFloat(lattice.normal));
+        const auto vector = [](Vec3d a) { return toVector(toFloat(a)); };
+        const Vec3d low = toDouble(scene.domain.min);
         const int face = int(faces.size()), firstKey = int(keys.size());
         keys.insert(keys.end(), own.begin(), own.end());
-        faces.push_back({normal, lattice.apart, real((lattice.layers - 0.5) * lattice.apart),
+        const bool flat = scene.simulation.dimensions == 2, round = source.mouth == Mouth::Disc;
+        // What is not held keeps half a spacing off where a particle is about to come, and nearly
+        // so on the sides.
+        const double apart = lattice.apart, beside = 0.25 * apart;
+        faces.push_back({vector(toDouble(source.center) - low), vector(lattice.normal),
+                         vector(lattice.across), vector(lattice.up),
+                         real(source.width / 2 + beside),
+                         flat ? real(farAway) : real(source.height / 2 + beside),
+                         round ? real(source.radius + beside) : real(0), apart,
+                         real((lattice.layers - 0.5) * apart), real(lattice.depth() + 0.5 * apart),
                          firstKey, int(keys.size())});
         for (const SourceLattice::Point& p : lattice.points)
-            points.push_back({toVector(toFloat(p.at - toDouble(scene.domain.min))), p.share, face});
+            points.push_back({vector(p.at - low), p.share, face});
         // No point is to give two particles at once.
         longestStep_ =
             std::min(longestStep_,
@@ -112,8 +142,8 @@ private:
         return particles + (clusterSize - 1) * cells.y * cells.z + points + clusterSize;
     }
     SourceView sources() const {
-        return {faces_.data(),       points_.data(),     keys_.data(), sinks_.data(),
-                int(points_.size()), int(sinks_.size()), tally_.data()};
+        return {faces_.data(),      points_.data(),      keys_.data(),       sinks_.data(),
+                int(faces_.size()), int(points_.size()), int(sinks_.size()), tally_.data()};
     }
     template <class Pass> void onSlots(const Pass& pass) {
         flow_.device.forEach(flow_.fluid.slots(), pass);
@@ -130,6 +160,7 @@ private:
             come(points, came);
         } else {
             *came = {};
+            flow_.search.movedAtMost(left->farthest);
             if (due->number > 0) come(points, came), flow_.search.outdate();
         }
         device.forEach(1, KeepTally{flow_.clock.data(), left, due, came, tally_.data()});
@@ -149,6 +180,7 @@ private:
     Buffer<Tally, Device> tally_{flow_.device};
     Buffer<Count, Device> counts_{flow_.device};
     Buffer<int, Device> numbers_{flow_.device};
+    void (Flow<Device>::*borrow_)() = nullptr;
     int most_ = 0;
     double longestStep_ = 1e9;  // s
 };

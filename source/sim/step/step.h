@@ -180,8 +180,10 @@ private:
                 forEachPart(parts, [](auto& part) { part.findNeighbours(); });
             },
             initial, keepsLists ? "" : noLists);
-        carriesDensity(scene_) ? add("equation of state", onFluid<ApplyEquationOfState>, initial)
-                               : add("density", densityPass(), initial);
+        if (!carriesDensity(scene_)) add("density", densityPass(), initial);
+        forEachPart(parts_, [&](auto& part) { part.borrowPressure(plan_, initial); });
+        if (carriesDensity(scene_))
+            add("equation of state", onFluid<ApplyEquationOfState>, initial);
         add("walls", wallPass(), initial, whyNoWallPressure());
         add("surroundings",
             carriesDensity(scene_) ? onFluid<WeighViscosity<K, Lists::All>>

@@ -24,9 +24,13 @@ Scene sceneWith(const std::vector<std::string>& knobs) {
 }
 
 struct TableFile {
-    std::filesystem::path path = std::filesystem::temp_directory_path() /
-                                 ("spindrift_flow_" + std::to_string(getpid()) + ".csv");
-    explicit TableFile(const std::string& text) { std::ofstream(path) << text; }
+    std::filesystem::path path;
+    explicit TableFile(const std::string& text) {
+        static int count = 0;
+        path = std::filesystem::temp_directory_path() /
+               ("spindrift_flow_" + std::to_string(getpid()) + "_" + std::to_string(count++));
+        std::ofstream(path) << text;
+    }
     ~TableFile() { std::filesystem::remove(path); }
 };
 
@@ -55,14 +59,14 @@ TEST(SourceLattice, HasTheVolumeOfItsMouthAndMeanOfItsProfile) {
                         mean = mean + arm;
                         EXPECT_NEAR(dot(arm, l.normal), 0, 1e-6);
                         EXPECT_LT(length(arm), 0.2);
-                        if (profile == Profile::Uniform) {
-                            EXPECT_DOUBLE_EQ(p.share, 1);
-                        }
+                        if (profile == Profile::Uniform) { EXPECT_DOUBLE_EQ(p.share, 1); }
                     }
                     EXPECT_NEAR(shares, n, 1e-9 * n);
                     EXPECT_NEAR(length(mean), 0, 1e-6 * n);
                     if (profile == Profile::Parabolic) {
-                        EXPECT_NEAR(l.largestShare(), mouth == Mouth::Disc ? 2 : 1.5, 0.2);
+                        EXPECT_NEAR(l.largestShare(), mouth == Mouth::Disc ? 2 : 1.5,
+                                    mouth == Mouth::Disc ? 0.45 : 0.1)
+                            << "of so few points";
                     }
                 }
 }
@@ -98,7 +102,7 @@ TEST(SourceSchedule, IsTheIntegralOfWhatItsFileSays) {
 
 // In one line that names the knob and a way out.
 TEST(SourceChecks, RefuseWhatCannotBe) {
-    const std::string tap = R"(sources=[{"center":[0.5,0.5,0.5],"velocity":1%s}])";
+    const std::string tap = R"(sources=[{"velocity":1%s}])";
     const auto with = [&](const std::string& more) {
         std::string knob = tap;
         return knob.replace(knob.find("%s"), 2, more);

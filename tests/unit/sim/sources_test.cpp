@@ -1,6 +1,7 @@
 // Fluid that comes and leaves: as much as was asked for, and nothing else of a run is changed.
 #include "core/error.h"
 #include "measure/health.h"
+#include "scene/check.h"
 #include "scene/json.h"
 #include "scene/schema.h"
 #include "scene/sources.h"
@@ -30,6 +31,7 @@ Scene sceneOf(Formulation f, int dimensions, const std::vector<std::string>& kno
     s.domain.max = {0.8f, 0.8f, 0.5f};
     s.fluid.bodies.clear();
     for (const std::string& knob : knobs) setKnob(s, knob);
+    checkScene(s, nameOf(s));
     return s;
 }
 
@@ -51,7 +53,8 @@ void expectSame(const RunState& a, const RunState& b, const std::string& what) {
 TEST(Sources, GiveTheirFlowTimesTimeToALayer) {
     const char* sources[] = {
         R"(sources=[{"center":[0.4,0.6,0.25],"width":0.2,"height":0.2,"velocity":0.7}])",
-        R"(sources=[{"center":[0.3,0.4,0.25],"normal":[1,0,0],"width":0.13,"flow":0.02}])",
+        R"(sources=[{"center":[0.3,0.4,0.25],"normal":[1,0,0],"width":0.13,"height":0.2,)"
+        R"("flow":0.06}])",
         R"(sources=[{"center":[0.4,0.5,0.25],"normal":[2,1,0],"width":0.2,"velocity":1.5,)"
         R"("profile":"parabolic"}])",
         R"(sources=[{"mouth":"disc","center":[0.4,0.4,0.25],"normal":[1,-1,0.5],"radius":0.1,)"
@@ -61,20 +64,21 @@ TEST(Sources, GiveTheirFlowTimesTimeToALayer) {
         for (const int d : {2, 3})
             for (const char* source : sources)
                 for (const char* cfl : {"time.cfl=0.4", "time.cfl=0.1"}) {
+                    if (d == 2 && std::string(source).find("disc") != std::string::npos) continue;
                     const Scene s = sceneOf(f, d, {source, cfl});
-                    if (d == 2 && s.sources[0].mouth == Mouth::Disc) continue;
                     const double time = 0.15, mass = particleMass(s);
                     double wanted = 0, layer = 0;
                     for (const Source& one : s.sources) {
                         const SourceLattice lattice = latticeOf(s, one);
-                        wanted += s.fluid.restDensity * lattice.area *
-                                  wayAt(scheduleOf(s, one), time);
+                        wanted +=
+                            s.fluid.restDensity * lattice.area * wayAt(scheduleOf(s, one), time);
                         layer += mass * double(lattice.points.size());
                     }
                     const auto simulation = makeSimulation(s);
                     const int before = simulation->fluidCount();
                     runTo(*simulation, time);
                     const Measurement m = simulation->measure();
+                    layer += m.dt * wanted / (0.5 * time);  // of the next step's beginning
                     EXPECT_NEAR(m.massIn, wanted, layer) << nameOf(s) << " " << source;
                     EXPECT_GT(m.massIn, 0) << nameOf(s) << " " << source;
                     EXPECT_EQ(mass * (simulation->fluidCount() - before), m.massIn);
@@ -85,13 +89,13 @@ TEST(Sources, GiveTheirFlowTimesTimeToALayer) {
 TEST(Sources, LetFluidGoWithTheVelocityAskedFor) {
     for (const Formulation f : Formulations) {
         const Scene s = sceneOf(f, 2,
-                                {R"(sources=[{"center":[0.4,0.7,0],"width":0.2,"velocity":2}])",
+                                {R"(sources=[{"center":[0.4,0.6,0],"width":0.2,"velocity":2}])",
                                  "simulation.gravity=0,0,0"});
         const auto simulation = makeSimulation(s);
-        runTo(*simulation, 0.2);
+        runTo(*simulation, 0.15);
         int free = 0;
         for (const Particle& p : simulation->particles()) {
-            const bool held = p.position.y > 0.7 - 1e-4;
+            const bool held = p.position.y > 0.6 + 1e-3;
             free += !held;
             EXPECT_NEAR(p.velocity.y, -2, held ? 1e-6 : 0.05) << nameOf(s);
             EXPECT_NEAR(p.velocity.x, 0, held ? 1e-6 : 0.05) << nameOf(s);
@@ -102,11 +106,10 @@ TEST(Sources, LetFluidGoWithTheVelocityAskedFor) {
 
 // A tap, a tank and its drain, for long enough that most of what was there has left.
 Scene tankOf(Formulation f, int dimensions) {
-    return sceneOf(
-        f, dimensions,
-        {R"(sources=[{"center":[0.2,0.6,0.25],"width":0.2,"height":0.2,"velocity":1}])",
-         R"(sinks=[{"min":[0.6,-1,0],"max":[1,0.1,0.5]}])",
-         R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.8,0.2,0.5]}])"});
+    return sceneOf(f, dimensions,
+                   {R"(sources=[{"center":[0.2,0.6,0.25],"width":0.2,"height":0.2,"velocity":1}])",
+                    R"(sinks=[{"min":[0.6,-1,0],"max":[1,0.1,0.5]}])",
+                    R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.8,0.2,0.5]}])"});
 }
 
 TEST(Sources, NoIdIsUsedTwiceAndWhatIsThereIsWhatCameLessWhatLeft) {
@@ -116,7 +119,8 @@ TEST(Sources, NoIdIsUsedTwiceAndWhatIsThereIsWhatCameLessWhatLeft) {
             const auto simulation = makeSimulation(s);
             const int before = simulation->fluidCount();
             std::set<int> gone, there;
-            for (int k = 0; k < 120; ++k) {
+            for (const Particle& p : simulation->particles()) there.insert(p.id);
+            while (simulation->clock().time < 0.5) {
                 simulation->step();
                 std::set<int> now;
                 for (const Particle& p : simulation->particles()) {
@@ -148,13 +152,13 @@ TEST(Sources, GoOnFromAStateWithTheSameBitsForAnyNumberOfThreads) {
             if (i == Integrator::Split && f != Formulation::DeltaSph) continue;
             if (i != Integrator::SymplecticEuler && f == Formulation::Incompressible) continue;
             const auto whole = makeSimulation(s);
-            whole->step(60);
+            while (whole->clock().time < 0.25) whole->step();
             const RunState half = whole->state();
             s.compute.threads = 3;
             const auto rest = makeSimulation(s, half);
             expectSame(half, rest->state(), nameOf(s));
             whole->restart(half);
-            for (int k = 0; k < 60; ++k) whole->step(), rest->step();
+            for (int k = 0; k < 120; ++k) whole->step(), rest->step();
             expectSame(whole->state(), rest->state(), nameOf(s));
             EXPECT_GT(whole->state().sources.came, half.sources.came);
             EXPECT_GT(whole->state().sources.left, half.sources.left);
@@ -166,29 +170,29 @@ TEST(Sources, DoNotBurstUnderWater) {
     for (const Formulation f : Formulations)
         for (const int d : {2, 3})
             for (const char* source :
-                 {R"(sources=[{"center":[0.4,0.15,0.25],"normal":[0,1,0],"velocity":1}])",
-                  R"(sources=[{"center":[0.4,0.3,0.25],"normal":[1,0,0],"velocity":1}])"}) {
-                const Scene s = sceneOf(
-                    f, d,
-                    {source, R"(fluid.bodies=[{"shape":"block","min":[0,0,0],)"
-                             R"("max":[0.8,0.6,0.5],"pressure":"hydrostatic"}])"});
+                 {R"(sources=[{"center":[0.4,0.15,0.25],"normal":[0,1,0],"velocity":0.3}])",
+                  R"(sources=[{"center":[0.4,0.3,0.25],"normal":[1,0,0],"velocity":0.3}])"}) {
+                const Scene s =
+                    sceneOf(f, d,
+                            {source, R"(fluid.bodies=[{"shape":"block","min":[0,0,0],)"
+                                     R"("max":[0.8,0.6,0.5],"pressure":"hydrostatic"}])"});
                 const auto simulation = makeSimulation(s);
                 double fastest = 0;
-                while (simulation->clock().time < 0.3) {
+                while (simulation->clock().time < 0.6) {
                     simulation->step();
                     const Measurement m = simulation->measure();
                     fastest = std::max(fastest, m.maxSpeed);
                     ASSERT_EQ(divergence(s, m), "") << nameOf(s) << " " << source;
                 }
-                EXPECT_LT(fastest, 2.5) << nameOf(s) << " " << source;
+                EXPECT_LT(fastest, 1.5) << nameOf(s) << " " << source;
             }
 }
 
 TEST(Sources, StopWhenTheDomainIsFull) {
-    const Scene s = sceneOf(
-        Formulation::Wcsph, 2,
-        {R"(sources=[{"center":[0.4,0.6,0.25],"width":0.4,"velocity":2}])",
-         R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.8,0.4,0.5]}])"});
+    const Scene s =
+        sceneOf(Formulation::Wcsph, 2,
+                {R"(sources=[{"center":[0.4,0.6,0.25],"width":0.4,"velocity":2}])",
+                 R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.8,0.4,0.5]}])"});
     const auto simulation = makeSimulation(s);
     EXPECT_EQ(simulation->measure().massMissed, 0);
     runTo(*simulation, 0.5);
@@ -218,10 +222,9 @@ TEST(Sources, VerticesAreThoseOfTheParticlesThatAreThere) {
 }
 
 TEST(Sources, ATapRunsForAMinute) {
-    Scene s = sceneOf(
-        Formulation::Incompressible, 2,
-        {R"(sources=[{"center":[0.2,0.6,0],"width":0.1,"velocity":0.5}])",
-         R"(sinks=[{"min":[0.6,-1,0],"max":[1,0.1,0.5]}])", "output.time=60"});
+    Scene s = sceneOf(Formulation::Incompressible, 2,
+                      {R"(sources=[{"center":[0.2,0.6,0],"width":0.1,"velocity":0.5}])",
+                       R"(sinks=[{"min":[0.6,-1,0],"max":[1,0.1,0.5]}])", "output.time=60"});
     const auto simulation = makeSimulation(s);
     int most = 0;
     while (simulation->clock().time < 60) {
