@@ -413,6 +413,9 @@ private:
                        p.mass, p.body, p.wanted);
         for (const std::string& body : pouredAmiss(scene_, *simulation_))
             fmt::print(out, "poured         {}\n", body);
+        if (now_.comesAndGoes)
+            fmt::print(out, "came, left     {:.6g}, {:.6g} {}\n", now_.massIn, now_.massOut,
+                       perDepth("kg", now_.dimensions));
         fmt::print(out, "steps          {}, {:.3g} ms each\n", steps_ - first_, ms);
         if (scene_.time.mode == TimeMode::Local && made_ > 0)
             fmt::print(out, "local steps    {:.3g} evaluations of a particle a step\n",

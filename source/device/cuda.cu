@@ -34,9 +34,14 @@ struct OrderInCell {
     const int* cellStart;
     const int* unordered;
     int* order;
+    int cells;
     __device__ void operator()(int slot) const {
-        const int item = unordered[slot], begin = cellStart[key[item]],
-                  end = cellStart[key[item] + 1];
+        const int item = unordered[slot];
+        if (key[item] == cells) {  // in no cell
+            order[slot] = item;
+            return;
+        }
+        const int begin = cellStart[key[item]], end = cellStart[key[item] + 1];
         int before = 0;
         for (int s = begin; s < end; ++s) before += unordered[s] < item;
         order[begin + before] = item;
@@ -185,15 +190,15 @@ void Cuda::wait() const {
 int Cuda::sortByCell(int n, const int* key, int rows, int rowLength, int pad, int* cellStart,
                      Buffer<int, Cuda>& order) {
     CHECK(pad == 1);
-    const size_t cells = size_t(rows) * size_t(rowLength), aligned = 256;
+    const size_t cells = size_t(rows) * size_t(rowLength), starts = cells + 2, aligned = 256;
     auto padded = [&](size_t numbers) {
         return (numbers * sizeof(int) + aligned - 1) / aligned * aligned;
     };
     size_t scanBytes = 0;
     requireCuda(
-        cub::DeviceScan::ExclusiveSum(nullptr, scanBytes, key, cellStart, int(cells + 1), stream_),
+        cub::DeviceScan::ExclusiveSum(nullptr, scanBytes, key, cellStart, int(starts), stream_),
         "sorting");
-    const size_t bytes = padded(cells + 1) + padded(size_t(n)) + scanBytes;
+    const size_t bytes = padded(starts) + padded(size_t(n)) + scanBytes;
     if (bytes > sortSpaceBytes_) {
         release(std::exchange(sortSpace_, nullptr), std::exchange(sortSpaceBytes_, 0));
         sortSpace_ = allocateBytes(bytes);
@@ -201,17 +206,17 @@ int Cuda::sortByCell(int n, const int* key, int rows, int rowLength, int pad, in
     }
     char* space = static_cast<char*>(sortSpace_);
     int* counts = reinterpret_cast<int*>(space);
-    int* unordered = reinterpret_cast<int*>(space + padded(cells + 1));
-    void* scan = space + padded(cells + 1) + padded(size_t(n));
+    int* unordered = reinterpret_cast<int*>(space + padded(starts));
+    void* scan = space + padded(starts) + padded(size_t(n));
 
     order.resize(n);
-    clear(counts, (cells + 1) * sizeof(int));
+    clear(counts, starts * sizeof(int));
     forEach(n, CountCells{key, counts});
     requireCuda(
-        cub::DeviceScan::ExclusiveSum(scan, scanBytes, counts, cellStart, int(cells + 1), stream_),
+        cub::DeviceScan::ExclusiveSum(scan, scanBytes, counts, cellStart, int(starts), stream_),
         "sorting");
     forEach(n, PlaceInCell{key, cellStart, counts, unordered});
-    forEach(n, OrderInCell{key, cellStart, unordered, order.data()});
+    forEach(n, OrderInCell{key, cellStart, unordered, order.data(), int(cells)});
     return n;
 }
 

@@ -148,11 +148,14 @@ public:
         return host;
     }
 
-    // As Omp::sortByCell, without padding (pad 1) and without items to drop: returns n.
+    // As Omp::sortByCell, without padding (pad 1). No item is dropped: those with a key of `cells`,
+    // the number of cells, come behind all others, in any order. Writes cellStart[cells + 2], the
+    // last but one of them where those begin; returns n.
     int sortByCell(int n, const int* key, int rows, int rowLength, int pad, int* cellStart,
                    Buffer<int, Cuda>& order);
 
     static constexpr bool hostReadable = false;
+    static constexpr bool dropsItems = false;
     // Steps are recorded as CUDA graphs. `f` launches work and reads nothing; it is not run, it is
     // noted and then run.
     static constexpr bool recordsSteps = true;

@@ -119,6 +119,7 @@ public:
                    Buffer<int, Omp>& order);
 
     static constexpr bool hostReadable = true;  // its memory is the host's
+    static constexpr bool dropsItems = true;    // sortByCell does, with key -1
     // Steps are run pass by pass, and each pass is measured.
     static constexpr bool recordsSteps = false;
     struct Recording {

@@ -6,11 +6,13 @@
 #include "scene/formulation.h"
 #include "scene/json.h"
 #include "scene/sample_object.h"
+#include "scene/sources.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace spindrift {
 namespace {
@@ -18,9 +20,9 @@ namespace {
 using hdf5::Handle, hdf5::Trouble, hdf5::require;
 
 constexpr const char* Format = "spindrift checkpoint";
-constexpr int64_t Version =
-    6;  // 2: densities, where they are carried; 3: bodies, of mixtures; 4: motions of solids,
-        // objects; 5: per metre of depth in two dimensions; 6: solved pressures
+constexpr int64_t Version = 7;  // 2: densities, where they are carried; 3: bodies, of mixtures; 4:
+                                // motions of solids, objects; 5: per metre of depth in two
+                                // dimensions; 6: solved pressures; 7: sources and sinks
 
 // --- numbers and texts as attributes of the file ---
 
@@ -98,6 +100,18 @@ std::string sceneWithoutFiles(Scene scene) {
     return writeScene(scene);
 }
 
+void writeInts(hid_t file, const char* name, const std::vector<int>& values) {
+    hdf5::writeArray(file, name, H5T_STD_I32LE, H5T_NATIVE_INT, values.data(), {values.size(), 1});
+}
+
+void writeSources(hid_t file, const RunState& s) {
+    writeInts(file, "ids", s.particles.ids);
+    writeInts(file, "held by", s.particles.heldBy);
+    writeNumbers(file, "sources",
+                 {s.sources.time, double(s.sources.came), double(s.sources.left),
+                  double(s.sources.missed), double(s.sources.firstId)});
+}
+
 void writeAll(hid_t file, const Scene& scene, const RunState& s,
               const std::vector<CurvePoint>& curves) {
     const std::string text = sceneWithoutFiles(scene);
@@ -139,6 +153,7 @@ void writeAll(hid_t file, const Scene& scene, const RunState& s,
         writeNumbers(file, "energy",
                      {e.start, e.gravity, e.walls, e.stirred, e.others, e.viscosity, e.artificial,
                       e.diffusion, e.shifting, e.wallPressure});
+    if (comesAndGoes(scene)) writeSources(file, s);
     if (!curves.empty()) writeFloats(file, "curves", "", curves.data(), curves.size(), 4);
     if (!s.densities.empty())
         writeFloats(file, "densities", "kg/m³", s.densities.data(), s.densities.size(), 1);
@@ -206,10 +221,28 @@ void readEnergy(hid_t file, EnergyLedger& e) {
     e = {true, n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9]};
 }
 
+void readSources(hid_t file, Checkpoint& c) {
+    Placement& p = c.state.particles;
+    p.ids = readArray<int>(file, "ids", H5T_NATIVE_INT, 1);
+    p.heldBy = readArray<int>(file, "held by", H5T_NATIVE_INT, 1);
+    const std::vector<double> s = readNumbers(file, "sources", 5);
+    c.state.sources = {s[0], int64_t(s[1]), int64_t(s[2]), int64_t(s[3]), int(s[4])};
+    size_t points = 0;
+    for (const Source& source : c.scene.sources) points += latticeOf(c.scene, source).points.size();
+    const size_t count = p.positions.size();
+    if (p.ids.size() != count || (count > 0 && p.ids[0] < 0) ||
+        !std::is_sorted(p.ids.begin(), p.ids.end(), std::less_equal<>()))
+        throw Trouble{"ids"};
+    const auto isPoint = [&](int point) { return point >= 0 && size_t(point) <= points; };
+    if (p.heldBy.size() != count || !std::all_of(p.heldBy.begin(), p.heldBy.end(), isPoint))
+        throw Trouble{"held by"};
+}
+
 // Each particle has one of each, and all of them can be.
 void checkFluid(const Scene& scene, const RunState& state) {
     const size_t count = state.particles.positions.size();
-    if (count == 0 || state.particles.velocities.size() != count) throw Trouble{"velocities"};
+    if ((count == 0 && !comesAndGoes(scene)) || state.particles.velocities.size() != count)
+        throw Trouble{"velocities"};
     if (carriesDensity(scene) && state.densities.size() != count) throw Trouble{"densities"};
     for (float rho : state.densities)
         if (!(std::isfinite(rho) && rho > 0)) throw Trouble{"densities"};
@@ -253,6 +286,7 @@ Checkpoint readAll(hid_t file, const std::string& path) {
         c.state.pressures = readArray<float>(file, "pressures", H5T_NATIVE_FLOAT, 1);
         c.state.clock.share = readNumbers(file, "step share", 1)[0];
     }
+    if (comesAndGoes(c.scene)) readSources(file, c);
     static_assert(sizeof(CurvePoint) == 4 * sizeof(float));
     if (H5Lexists(file, "curves", H5P_DEFAULT) > 0)
         c.curves = readArray<CurvePoint>(file, "curves", H5T_NATIVE_FLOAT, 4);

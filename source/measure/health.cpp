@@ -2,6 +2,7 @@
 
 #include "scene/formulation.h"
 #include "scene/particles.h"
+#include "scene/sources.h"
 
 #include <fmt/format.h>
 
@@ -29,7 +30,7 @@ double mostSoundSpeed(const Scene& scene) {
 double leastStep(const Scene& scene) {
     const double h = supportRadius(scene) / 2;
     double nu = 0;
-    for (const Body& body : scene.fluid.bodies)
+    for (const Body& body : fluidsOf(scene.fluid))
         nu = std::max(nu, double(viscosity(scene, body)) / restDensity(scene, body));
     const double sound = scene.time.cfl * h / (4 * mostSoundSpeed(scene)),
                  viscous = nu > 0 ? 0.125 * h * h / nu : sound;
@@ -140,7 +141,7 @@ HealthGuard::Finding HealthGuard::look(Measurement& m) {
 }
 
 void HealthGuard::keep(RunState state) {
-    if (!kept_[1].particles.positions.empty()) kept_[0] = std::move(kept_[1]);
+    if (kept_[1].clock.steps > 0) kept_[0] = std::move(kept_[1]);
     kept_[1] = std::move(state);
 }
 
@@ -217,10 +218,16 @@ void HealthGuard::blame(const Measurement& m) {
     culprits_.resize(most);
     while (culprits_.size() > 1 && key(culprits_.back()) < key(culprits_[0]) / 2)
         culprits_.pop_back();
-    for (Particle& p : culprits_)
-        if (!isFinite(p.position))
-            p.position = toDouble(lastGood().particles.positions[size_t(p.id)]) +
-                         toDouble(scene_.domain.min);
+    const Placement& good = lastGood().particles;
+    for (Particle& p : culprits_) {
+        if (isFinite(p.position)) continue;
+        size_t index = size_t(p.id);
+        if (!good.ids.empty())
+            index =
+                size_t(std::lower_bound(good.ids.begin(), good.ids.end(), p.id) - good.ids.begin());
+        if (index < good.positions.size())  // it may have come since
+            p.position = toDouble(good.positions[index]) + toDouble(scene_.domain.min);
+    }
 }
 
 }  // namespace spindrift

@@ -50,7 +50,7 @@ std::vector<std::string> pouredAmiss(const Scene& scene, Simulation& simulation)
     const bool known = std::none_of(bodies.begin(), bodies.end(), [](const Body& body) {
         return body.shape == Shape::File || body.shape == Shape::Mesh;
     });
-    if (!known || scene.fluid.particleMass > 0) return {};
+    if (!known || scene.fluid.particleMass > 0 || comesAndGoes(scene)) return {};
     const std::vector<double> volumes = bodyVolumes(scene);
     const std::vector<uint16_t> of = simulation.state().particles.bodies;  // of a mixture only
     std::vector<Share> shares;

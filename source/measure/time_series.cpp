@@ -60,6 +60,12 @@ constexpr Quantity SolveQuantities[] = {
     {"solve_error", "1", [](const Measurement& m) { return m.solve.error; }},
 };
 
+// Where fluid comes and goes, since the beginning.
+constexpr Quantity SourceQuantities[] = {
+    {"mass_in", "kg", [](const Measurement& m) { return m.massIn; }, true},
+    {"mass_out", "kg", [](const Measurement& m) { return m.massOut; }, true},
+};
+
 struct SolidQuantity {
     const char *name, *unit;
     Vec3d SolidMeasurement::*of;
@@ -113,6 +119,8 @@ template <class F> void forValues(const Measurement& m, const F& f) {
             for (int k = 0; k < 3; ++k)
                 f(fmt::format("face.{}.{}_{}", face.name, q.name, "xyz"[k]),
                   perDepth("N", m.dimensions), (face.*q.of)[k]);
+    if (m.comesAndGoes)
+        for (const Quantity& q : SourceQuantities) f(q.name, unitOf(q), q.of(m));
     for (const SolidMeasurement& s : m.solids)
         for (const SolidQuantity& q : SolidQuantities)
             for (int k = 0; k < 3; ++k)

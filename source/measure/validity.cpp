@@ -4,6 +4,7 @@
 #include "scene/formulation.h"
 #include "scene/particles.h"
 #include "scene/sample_solid.h"
+#include "scene/sources.h"
 #include "scene/thin_solid.h"
 
 #include <fmt/format.h>
@@ -165,6 +166,8 @@ std::vector<std::string> remarksOn(const Scene& scene) {
 }
 
 Validity::Validity(const Scene& scene) : isClassic_(factsOf(scene).isHistorical) {
+    for (const Source& s : scene.sources)
+        sources_ += (sources_.empty() ? "" : ", ") + nameOf(scene, s);
     for (std::string& text : remarksOn(scene)) remark(std::move(text), 0);
 }
 
@@ -181,6 +184,12 @@ void Validity::look(const Measurement& m) {
         remark(fmt::format("pressures: not found in {} of {} steps, which were shortened; raise "
                            "solver.iterations or lower time.cfl",
                            m.solve.failures, m.steps),
+               m.time);
+    if (m.massMissed > 0)
+        remark(fmt::format("fluid of {}: from {:.4g} s on less comes than is to, because the "
+                           "domain is full, or the run goes on beyond output.time; let fluid out "
+                           "by sinks, or set stop or volume",
+                           sources_, m.time),
                m.time);
     if (m.maxSpeed > MostMach * m.soundSpeed && !m.solvesPressure)
         remark(fmt::format("Mach number: {:.2g} at {:.4g} s, above {:g}; set fluid.sound_speed to "

@@ -39,6 +39,7 @@ private:
     void remark(std::string text, double time);
 
     bool isClassic_;
+    std::string sources_;  // names of all
     std::vector<Remark> remarks_;
 };
 

@@ -7,6 +7,7 @@
 #include "scene/check_view.h"
 #include "scene/check_bodies.h"
 #include "scene/check_particle_files.h"
+#include "scene/check_sources.h"
 #include "scene/convex.h"
 #include "scene/formulation.h"
 #include "scene/json.h"
@@ -18,6 +19,7 @@
 #include "scene/particle_spacing.h"
 #include "scene/sample_object.h"
 #include "scene/schema.h"
+#include "scene/sources.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -327,8 +329,9 @@ void checkProbe(const Scene& scene, size_t index) {
 void checkCounts(const Scene& scene, ParticleCount count) {
     const std::string what = fmt::format(
         "{} fluid and {} boundary particles{}", count.fluid, count.walls,
-        scene.objects.empty() ? ""
-                              : fmt::format(", {:.0f} of objects", countObjectParticles(scene)));
+        comesAndGoes(scene)     ? " at most"
+        : scene.objects.empty() ? ""
+                                : fmt::format(", {:.0f} of objects", countObjectParticles(scene)));
     const char* remedy = "raise simulation.spacing or shrink the bodies and the domain";
     if (count.fluid > MostParticles || count.walls > MostParticles - count.fluid)
         throw Error(
@@ -356,10 +359,11 @@ void checkScene(const Scene& scene, const std::string& place, std::optional<Part
     try {
         checkDomain(scene);
         checkMethods(scene);
-        if (scene.fluid.bodies.empty())
+        if (scene.fluid.bodies.empty() && scene.sources.empty())
             refuse("fluid.bodies", "is empty; add a body of fluid, e.g. {\"shape\": \"block\"}");
         for (size_t b = 0; b < scene.fluid.bodies.size(); ++b) checkBody(scene, b);
         checkMeshes(scene);
+        checkSources(scene);
         const ParticleCount count = begun ? *begun : countBodies(scene);
         checkFills(scene, count);
         checkMovingFace(scene);
@@ -371,7 +375,7 @@ void checkScene(const Scene& scene, const std::string& place, std::optional<Part
         for (size_t p = 0; p < scene.output.probes.size(); ++p) checkProbe(scene, p);
         checkView(scene);
         checkOutput(scene);
-        checkCounts(scene, count);
+        checkCounts(scene, {mostFluid(scene, count.fluid), count.walls});
         if (!begun) checkParticleFiles(scene);
     } catch (const Error& error) {
         throw Error(error.failure, fmt::format("{}: {}", place, error.what()));

@@ -143,6 +143,7 @@ Scene loadScene(const std::string& file) {
     for (Solid& solid : scene.solids) findBeside(solid.path);
     for (Object& object : scene.objects) findBeside(object.path);
     findBeside(scene.view.colorFile);
+    for (Source& source : scene.sources) findBeside(source.path);
     return scene;
 }
 

@@ -10,6 +10,7 @@
 #include "scene/pack.h"
 #include "scene/sample_object.h"
 #include "scene/sample_solid.h"
+#include "scene/sources.h"
 #include "scene/start_fields.h"
 #include "scene/thin_solid.h"
 
@@ -146,7 +147,7 @@ bool isMultiFluid(const Scene& scene) {
 }
 float largestViscosity(const Scene& scene) {
     float most = 0;
-    for (const Body& body : scene.fluid.bodies) most = std::max(most, viscosity(scene, body));
+    for (const Body& body : fluidsOf(scene.fluid)) most = std::max(most, viscosity(scene, body));
     return most;
 }
 
@@ -171,6 +172,8 @@ const char* whyViscosityForm(const Scene& scene) {
 bool hasMixingForces(const Scene& scene) {
     return scene.fluid.velocityTransfer > 0 || scene.fluid.buoyancy > 0;
 }
+
+bool comesAndGoes(const Scene& scene) { return !scene.sources.empty() || !scene.sinks.empty(); }
 
 bool shiftsParticles(const Scene& scene) { return factsOf(scene).shifts; }
 
@@ -197,6 +200,9 @@ Placement placeParticles(const Scene& scene) {
     if (!std::all_of(near.begin(), near.end(), areWhole))
         packBeside(cut, lattices, slants, first, places);
     for (Place& place : places) place.at = place.at + jitter.next();
+    if (!scene.sources.empty())
+        std::erase_if(places,
+                      [mouths = MouthRoom(scene)](const Place& p) { return mouths.takes(p.at); });
     if (!scene.objects.empty())
         std::erase_if(
             places, [objects = ObjectRoom(scene)](const Place& p) { return objects.takes(p.at); });
@@ -213,6 +219,7 @@ Placement placeParticles(const Scene& scene) {
     for (size_t b = 0; b < scene.fluid.bodies.size(); ++b) {
         if (scene.fluid.bodies[b].shape == Shape::File) placeFile(scene, b, out);
     }
+    fillMouths(scene, out);
     if (!isMultiFluid(scene)) out.bodies = {};
     if (!out.densities.empty()) out.densities.resize(out.positions.size());
     for (const Solid& solid : scene.solids) {
@@ -300,6 +307,7 @@ double soundSpeed(const Scene& s, const FluidExtent& fluid) {
     for (const Object& object : s.objects)
         start = std::max(start, length(toDouble(object.velocity)));
     for (const Grip& grip : s.grips) start = std::max(start, largestSpeed(grip));
+    for (const Source& source : s.sources) start = std::max(start, largestSpeed(s, source));
     const double pull =
         s.simulation.centralRate * length(0.5 * size);  // to the centre from a corner
     // The pressure in the smallest drop that is one, 2 sigma / R.
@@ -372,6 +380,7 @@ ParticleCount countParticles(const Scene& scene) {
             points = std::min(points, std::numbers::pi * r * r * double(l.n[int(body.axis)]));
         fluid += points;
     }
+    for (const Source& source : scene.sources) fluid += double(particlesInMouth(scene, source));
     count.fluid = int64_t(std::min(fluid, 9e18));
     if (scene.walls.kind == WallKind::Particles) count.walls = wallShell(scene).count();
     double solids = 0;

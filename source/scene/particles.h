@@ -20,6 +20,9 @@ struct Placement {
         densities{};  // kg/m³, 0 where the pressure says; none at all where no file had any
     std::vector<uint16_t> bodies{};     // of a mixture: which body each particle is of
     std::vector<SolidSample> solids{};  // those of walls, at the beginning of a run
+    // Where particles come and go: ids, rising, none at the beginning: 0, 1, ...; and which point
+    // of the sources each is held by, from 1 on (scene/sources.h), 0: none; none at all: no one.
+    std::vector<int> ids{}, heldBy{};
 };
 
 // Where the fluid is at the start, m from the domain's corner, and how fast, m/s.

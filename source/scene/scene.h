@@ -54,6 +54,8 @@ enum class StirMode { Drag, Attract, Repel };
 enum class ProbeKind { Point, Line, Height, Front };
 enum class Order { Mean, Linear };
 enum class ObjectShape { Block, Sheet, Tube, Shell };
+enum class Mouth { Rectangle, Disc };
+enum class Profile { Uniform, Parabolic };
 
 // A block reads min and max, a wedge too: its ridge runs along z, above the middle of its base. A
 // sphere reads center and radius, a cylinder center, radius, height and axis; a mesh, triangles of
@@ -153,6 +155,30 @@ struct Grip {
 // A blade: breaks the bonds whose middles are in its box at that time.
 struct Cut {
     float time = 0;                            // s
+    Vec3 min{0, 0, 0}, max{0.1f, 0.1f, 0.1f};  // m
+};
+
+// A tap or an inlet: fluid of the scene comes out of a mouth, along its normal. Just before it, as
+// far as a support radius, particles go on in layers with the velocity that is asked for; beyond
+// the mouth they are free. A rectangle reads width and height, a disc radius.
+struct Source {
+    Mouth mouth = Mouth::Rectangle;
+    std::string name;               // in messages; "" = sources[0], sources[1], ...
+    Vec3 center{0.5f, 0.5f, 0.5f};  // m, of the mouth
+    Vec3 normal{0, -1, 0};          // to where the fluid goes, of any length
+    float width = 0.1f;             // m, across the normal and the height
+    float height = 0.1f;            // m, along z, or along y of a mouth that looks along z
+    float radius = 0.05f;           // m
+    float velocity = 0;             // m/s, mean over the mouth
+    float flow = 0;                 // m³/s, in two dimensions m²/s; instead of a velocity
+    std::string path;               // CSV with velocities or flows over time, instead of both
+    Profile profile = Profile::Uniform;
+    float start = 0, stop = 0;  // s; stop 0 = never
+    float volume = 0;           // m³, in two dimensions m²: what it gives in all, 0 = no limit
+};
+
+// A drain or an outlet: what enters its box leaves the run.
+struct Sink {
     Vec3 min{0, 0, 0}, max{0.1f, 0.1f, 0.1f};  // m
 };
 
@@ -384,6 +410,8 @@ struct Scene {
     std::vector<Object> objects;
     std::vector<Grip> grips;
     std::vector<Cut> cuts;
+    std::vector<Source> sources;
+    std::vector<Sink> sinks;
     Contact contact;
     Fluid fluid;
     TimeKnobs time;
@@ -421,6 +449,8 @@ const char* whyViscosityForm(const Scene&);
 // where there is none or it drives a flow along a periodic axis. As a unit vector:
 Up upOf(const Scene&);
 Vec3 upward(const Scene&);
+// Whether particles come or leave while it runs.
+bool comesAndGoes(const Scene&);
 // Whether particles move a little beside the fluid, to stay evenly spread.
 bool shiftsParticles(const Scene&);
 

@@ -72,6 +72,8 @@ constexpr auto enumNames(StirMode) { return std::array{"drag", "attract", "repel
 
 constexpr auto enumNames(ProbeKind) { return std::array{"point", "line", "height", "front"}; }
 constexpr auto enumNames(ObjectShape) { return std::array{"block", "sheet", "tube", "shell"}; }
+constexpr auto enumNames(Mouth) { return std::array{"rectangle", "disc"}; }
+constexpr auto enumNames(Profile) { return std::array{"uniform", "parabolic"}; }
 constexpr auto enumNames(Order) { return std::array{"mean", "linear"}; }
 
 // Which knobs a shape has depends on which it is; that is visited first, so that a reader has set
@@ -280,6 +282,51 @@ void visitMember(C& c, const std::string& at, Visitor&& visit) {
     visit(at + ".max", c.max, Knob{"m", -1e7f, 1e7f, "upper corner", Restart});
 }
 
+template <class S, class Visitor>
+requires std::is_same_v<std::remove_const_t<S>, Source>
+void visitMember(S& s, const std::string& at, Visitor&& visit) {
+    visit(at + ".mouth", s.mouth, Knob{"", 0, 0, "what fluid comes out of", Restart});
+    visit(at + ".name", s.name, Knob{"", 0, 0, "in messages", Restart});
+    visit(at + ".center", s.center, Knob{"m", -1e7f, 1e7f, "of the mouth", Restart});
+    visit(at + ".normal", s.normal,
+          Knob{"", -1e4f, 1e4f, "to where the fluid goes; of any length", Restart});
+    if (s.mouth == Mouth::Rectangle) {
+        visit(at + ".width", s.width,
+              Knob{"m", 1e-9f, 1e7f, "across the normal and the height", Restart});
+        visit(at + ".height", s.height,
+              Knob{"m", 1e-9f, 1e7f,
+                   "along z as far as the normal allows, along y of a mouth that looks along z; "
+                   "not in two dimensions",
+                   Restart});
+    } else {
+        visit(at + ".radius", s.radius, Knob{"m", 1e-9f, 1e7f, "radius", Restart});
+    }
+    visit(at + ".velocity", s.velocity, Knob{"m/s", 0, 1e3f, "mean over the mouth", Restart});
+    visit(at + ".flow", s.flow,
+          Knob{"m³/s", 0, 1e9f, "instead of a velocity; in two dimensions m²/s", Restart});
+    visit(at + ".path", s.path,
+          Knob{"", 0, 0,
+               "instead of both: CSV with the columns t and velocity, or t and flow; they change "
+               "evenly between its rows. A relative path starts at the scene file",
+               Restart});
+    visit(at + ".profile", s.profile,
+          Knob{"", 0, 0,
+               "of velocities in the mouth: uniform, or parabolic (Poiseuille): across the width "
+               "of a rectangle, from the middle of a disc",
+               Restart});
+    visit(at + ".start", s.start, Knob{"s", 0, 1e6f, "when it is opened", Restart});
+    visit(at + ".stop", s.stop, Knob{"s", 0, 1e6f, "and closed, 0 = never", Restart});
+    visit(at + ".volume", s.volume,
+          Knob{"m³", 0, 1e9f, "after which it is closed, 0 = no limit; in two dimensions m²",
+               Restart});
+}
+template <class S, class Visitor>
+requires std::is_same_v<std::remove_const_t<S>, Sink>
+void visitMember(S& s, const std::string& at, Visitor&& visit) {
+    visit(at + ".min", s.min, Knob{"m", -1e7f, 1e7f, "lower corner", Restart});
+    visit(at + ".max", s.max, Knob{"m", -1e7f, 1e7f, "upper corner", Restart});
+}
+
 template <class P, class Visitor>
 requires std::is_same_v<std::remove_const_t<P>, Probe>
 void visitMember(P& p, const std::string& at, Visitor&& visit) {
@@ -326,6 +373,8 @@ void visitLists(S& scene, Visitor&& visit) {
     visit("objects", scene.objects, "elastic objects");
     visit("grips", scene.grips, "what holds or moves parts of objects");
     visit("cuts", scene.cuts, "blades that cut objects");
+    visit("sources", scene.sources, "taps and inlets, of which fluid comes");
+    visit("sinks", scene.sinks, "drains and outlets, where fluid leaves");
     visit("fluid.bodies", scene.fluid.bodies, "bodies of fluid");
     visit("output.probes", scene.output.probes,
           "gauges whose readings are columns of the time series");
@@ -335,6 +384,7 @@ void visitLists(S& scene, Visitor&& visit) {
 inline Shape& kindOf(Form& f) { return f.shape; }
 inline ProbeKind& kindOf(Probe& p) { return p.kind; }
 inline ObjectShape& kindOf(Object& o) { return o.shape; }
+inline Mouth& kindOf(Source& s) { return s.mouth; }
 template <class Member> std::vector<Member> oneOfEachKind() {
     if constexpr (!requires(Member & m) { kindOf(m); })
         return std::vector<Member>(1);
@@ -769,6 +819,8 @@ void visitKnobs(S& scene, Visitor&& visit) {
     schema::visitMembers(scene.objects, "objects", visit);
     schema::visitMembers(scene.grips, "grips", visit);
     schema::visitMembers(scene.cuts, "cuts", visit);
+    schema::visitMembers(scene.sources, "sources", visit);
+    schema::visitMembers(scene.sinks, "sinks", visit);
     schema::visitContact(scene.contact, visit);
     schema::visitFluid(scene, visit);
     schema::visitMembers(scene.fluid.bodies, "fluid.bodies", visit);

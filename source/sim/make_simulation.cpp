@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "device/cuda_devices.h"
 #include "scene/memory.h"
+#include "scene/sources.h"
 
 #include <hwy/targets.h>
 
@@ -81,11 +82,13 @@ std::unique_ptr<Simulation> makeSimdSimulation(const Scene& scene, const RunStat
 }
 
 static std::unique_ptr<Simulation> build(const Scene& scene, const RunState* state) {
-    const bool gpu = runsOnGpu(scene, state ? countOf(state->particles) : countParticles(scene));
+    ParticleCount count = state ? countOf(state->particles) : countParticles(scene);
+    count.fluid = mostFluid(scene, count.fluid);
+    const bool gpu = runsOnGpu(scene, count);
     try {
         const RunState start = state ? RunState() : RunState(placeParticles(scene));
         const RunState& from = state ? *state : start;
-        if (from.particles.positions.empty())
+        if (from.particles.positions.empty() && !comesAndGoes(scene))
             throw Error(
                 Failure::Scene,
                 "fluid.bodies: not one particle fits into them beside the solids and objects; "

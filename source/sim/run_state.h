@@ -9,6 +9,15 @@
 
 namespace spindrift {
 
+// Of sources and sinks: until when all has come that was due (s), how many particles have come and
+// left, how many could not come, and the id from which on those that come are counted; at the
+// beginning none.
+struct SourceState {
+    double time = 0;
+    int64_t came = 0, left = 0, missed = 0;
+    int firstId = -1;
+};
+
 struct RunState {
     Placement particles;  // in the order of their ids
     StepState clock;
@@ -21,6 +30,7 @@ struct RunState {
                                       // otherwise, and at the beginning, empty
     ObjectState objects;
     EnergyLedger energy;  // where it is asked for
+    SourceState sources;
 
     RunState() = default;
     // The beginning of a run.

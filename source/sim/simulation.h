@@ -90,8 +90,11 @@ struct Measurement {
     double soundSpeed = 0;        // m/s, of the equation of state
     bool solvesPressure = false;  // the formulation does, as `solve` reports
     SolveReport solve;
-    std::vector<SolidMeasurement> solids;  // one for each of the scene's
-    std::vector<FaceMeasurement> faces;    // of the domain that are walls, where they are asked for
+    bool comesAndGoes = false;                       // fluid does, as these say:
+    double massIn = 0, massOut = 0, massMissed = 0;  // kg since the beginning, that came, that
+                                                     // left, that could not come for want of room
+    std::vector<SolidMeasurement> solids;            // one for each of the scene's
+    std::vector<FaceMeasurement> faces;  // of the domain that are walls, where they are asked for
     std::optional<EnergyMeasurement> energy;  // where it is asked for
     bool finite = true;                       // no NaN or infinity in position, velocity, density
 };
@@ -149,8 +152,9 @@ class Readable {
 public:
     virtual ~Readable() = default;
 
-    // Fluid particles have ids [0, fluidCount), boundary particles [fluidCount, fluidCount +
-    // wallCount).
+    // Of fluid and of boundary particles. Fluid particles have ids [0, fluidCount); where they come
+    // and go (sources, sinks) it is how many there are now, whose ids rise and are never used
+    // again.
     virtual int fluidCount() const = 0;
     virtual int wallCount() const = 0;
     // The first of the boundary particles belong to solids.
@@ -161,8 +165,8 @@ public:
     // What it comes to, which takes a look at all particles; and the time alone.
     virtual Measurement measure() = 0;
     virtual StepState clock() = 0;
-    // All fluid particles, in the order of their ids; one of them by its id in [0, fluidCount),
-    // Error (Usage) for any other.
+    // All fluid particles, in the order of their ids; one of them by its id, Error (Usage) where
+    // there is none.
     virtual std::vector<Particle> particles() = 0;
     virtual Particle particle(int id) = 0;
     // Where each of the scene's solids is now.
@@ -172,11 +176,12 @@ public:
     // Where the run stands: makeSimulation(scene, state) goes on from there, on any device.
     virtual RunState state() = 0;
 
-    // Fills out[id] for every fluid particle, and for the first `walls` of the boundary particles;
-    // those of objects follow. `out` must hold fluidCount + walls + objectParticleCount vertices;
-    // memory of cudaDevice() is written by a kernel, host memory of a GPU run by one copy. Returns
-    // the range of the fluid's values. Boundary value: 1 of a solid, 0 of the domain's walls, of
-    // objects 2 + their radius / that of a fluid particle.
+    // Fills out[id] for every fluid particle, where they come and go the first fluidCount in an
+    // order of their own, and then for the first `walls` of the boundary particles; those of
+    // objects follow. `out` must hold fluidCount + walls + objectParticleCount vertices; memory of
+    // cudaDevice() is written by a kernel, host memory of a GPU run by one copy. Returns the range
+    // of the fluid's values. Boundary value: 1 of a solid, 0 of the domain's walls, of objects 2 +
+    // their radius / that of a fluid particle.
     virtual Range writeVertices(VertexMemory out, ColorBy, int walls) = 0;
     // The number of the CUDA device that steps, or hostMemory (-1).
     virtual int cudaDevice() const = 0;

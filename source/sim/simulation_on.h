@@ -11,6 +11,7 @@
 #include "sim/particles/picture.h"
 #include "sim/parts/rare_forces.h"
 #include "sim/parts/solids.h"
+#include "sim/parts/sources.h"
 #include "sim/step/step.h"
 #include "sim/step/step_runner.h"
 
@@ -40,10 +41,10 @@ public:
     // --- steps ---
 
     void restart(const RunState& state) override {
-        require(int(state.particles.positions.size()) == flow_.fluidCount,
-                "restart: the state has another number of particles than the run");
-        flow_.fluid.upload(state.particles.positions, state.particles.velocities,
-                           flow_.densitiesOf(state), 0);
+        require(
+            int(state.particles.positions.size()) == flow_.fluidCount || comesAndGoes(flow_.scene),
+            "restart: the state has another number of particles than the run");
+        flow_.uploadFluid(state);
         if (factsOf(flow_.scene).solvesPressure) flow_.fluid.setPressures(flow_.pressuresOf(state));
         flow_.fillMixture();
         StepState clock = state.clock;
@@ -57,7 +58,7 @@ public:
         forEachPart(parts(), [&](auto& part) { part.restart(state); });
         flow_.search.outdate();
         runner_.runInitial();  // there is something to see
-        if (energy_.isOn()) energy_.begin(measureFluid(flow_));
+        if (energy_.isOn()) energy_.begin(measureFluid(flow_, fluidCount()));
     }
     void apply(const Scene& scene) override {
         refresh(scene);
@@ -91,7 +92,7 @@ public:
 
     // --- what it is like ---
 
-    int fluidCount() const override { return flow_.fluidCount; }
+    int fluidCount() const override { return sources_.count(); }
     int wallCount() const override { return flow_.wallCount; }
     int solidParticleCount() const override {
         return std::accumulate(flow_.solidSizes.begin(), flow_.solidSizes.end(), 0);
@@ -103,15 +104,16 @@ public:
     Range writeVertices(VertexMemory out, ColorBy by, int walls) override {
         if (out.device == flow_.device.index()) return writeVertices(out.data, by, walls);
         require(out.device == hostMemory, "writeVertices: memory of a device that doesn't step");
-        const int count = flow_.fluidCount + walls + objects_.count();
+        const int count = fluidCount() + walls + objects_.count();
         staging_.resize(count);
         const Range range = writeVertices(staging_.data(), by, walls);
         flow_.device.download(out.data, staging_.data(), count);
         return range;
     }
     Measurement measure() override {
-        Measurement m = measureFluid(flow_);
+        Measurement m = measureFluid(flow_, fluidCount());
         countSteps(m, clock(), blocks_.areOn(), flow_.fluidCount);
+        countComers(m, flow_.scene, sources_.tally());
         m.solvesPressure = factsOf(flow_.scene).solvesPressure;
         if (m.solvesPressure) m.solve = solver_.report();
         solids_.measure(m);
@@ -121,8 +123,8 @@ public:
     StepState clock() override { return flow_.readClock(); }
     RunState state() override {
         RunState s;
-        s.particles = {flow_.fluid.positions(flow_.fluidCount, 0),
-                       flow_.fluid.velocities(flow_.fluidCount, 0),
+        s.particles = {flow_.fluid.positions(),
+                       flow_.fluid.velocities(),
                        flow_.wallsAtHome,
                        {},
                        flow_.solidSizes,
@@ -130,16 +132,15 @@ public:
                        flow_.bodies};
         s.clock = clock();
         s.start = flow_.extent;
-        s.densities = flow_.fluid.densities(flow_.fluidCount);
-        s.pressures = flow_.fluid.pressures(flow_.fluidCount);
+        s.densities = flow_.fluid.densities();
+        s.pressures = flow_.fluid.pressures();
         forEachPart(parts(), [&](auto& part) { part.save(s); });
         return s;
     }
     std::vector<Particle> particles() override {
-        return flow_.fluid.download(flow_.fluidCount, flow_.scene.domain.min);
+        return flow_.fluid.download(flow_.scene.domain.min);
     }
     Particle particle(int id) override {
-        require(id >= 0 && id < flow_.fluidCount, "particle: the run has none of that number");
         return flow_.fluid.downloadOne(id, flow_.scene.domain.min);
     }
 
@@ -160,8 +161,8 @@ private:
         if (!sound) throw Error(Failure::Usage, otherwise);
     }
     auto parts() {
-        return std::tie(tension_, mixing_, solids_, floating_, objects_, resistance_, blocks_,
-                        energy_);
+        return std::tie(sources_, tension_, mixing_, solids_, floating_, objects_, resistance_,
+                        blocks_, energy_);
     }
     void refresh(const Scene& scene) {
         const bool halfListsBefore = flow_.usesHalfLists();
@@ -193,17 +194,18 @@ private:
     }
     Range writeVertices(Vertex* out, ColorBy by, int walls) {
         const View v = flow_.view();
-        const int firstWall = flow_.fluidCount, firstObject = firstWall + walls;
+        const int fluid = fluidCount(), firstWall = flow_.fluidCount, endWall = firstWall + walls;
         if (walls > 0)
             flow_.device.forEach(v.walls.slots,
-                                 WriteWallVertices{v, solids_.home(), out,
-                                                   firstWall + solidParticleCount(), firstObject});
-        objects_.writeVertices(out + firstObject, flow_.scene.simulation.spacing);
-        return writeFluid(flow_, out, by);
+                                 WriteWallVertices{v, solids_.home(), out + (fluid - firstWall),
+                                                   firstWall + solidParticleCount(), endWall});
+        objects_.writeVertices(out + fluid + walls, flow_.scene.simulation.spacing);
+        return writeFluid(flow_, {out, sources_.vertexNumbers()}, by);
     }
 
     std::string deviceName_;
     Flow<Device> flow_;
+    Sources<Device> sources_{flow_};
     SurfaceTension<Device> tension_{flow_};
     MixingForces<Device> mixing_{flow_};
     Solids<Device> solids_{flow_};

@@ -51,6 +51,24 @@ TEST_F(Restart, SolvedPressuresGoOnToo) {
     EXPECT_GT(read("rest.h5").state.pressures.size(), 0u);
 }
 
+TEST_F(Restart, FluidThatComesAndLeavesGoesOnToo) {
+    const std::string run =
+        "test/tap_small --headless --backend cpu --quiet --set output.checkpoint_every=0.1 ";
+    ASSERT_EQ(call(run + "--threads 2 --time 0.3 --checkpoint whole.h5").code, 0);
+    ASSERT_EQ(call(run + "--threads 2 --time 0.1 --checkpoint half.h5").code, 0);
+    ASSERT_EQ(call("half.h5 --headless --quiet --threads 1 --time 0.3 --checkpoint rest.h5").code,
+              0);
+    const RunState whole = read("whole.h5").state, rest = read("rest.h5").state;
+    expectSame(read("whole.h5"), read("rest.h5"));
+    EXPECT_EQ(whole.particles.ids, rest.particles.ids);
+    EXPECT_EQ(whole.particles.heldBy, rest.particles.heldBy);
+    EXPECT_EQ(whole.densities, rest.densities);
+    EXPECT_EQ(whole.sources.came, rest.sources.came);
+    EXPECT_EQ(whole.sources.left, rest.sources.left);
+    EXPECT_GT(rest.sources.came, read("half.h5").state.sources.came);
+    EXPECT_GT(rest.sources.left, read("half.h5").state.sources.left);
+}
+
 TEST_F(Restart, SolidsGoOnFromWhereTheyAre) {
     const std::string run =
         "test/solids_small --headless --backend cpu --quiet --set output.checkpoint_every=0.05 ";

@@ -30,7 +30,8 @@ const char* const Scenes[] = {"1.json",
                               "test/surface_small.json",
                               "test/floating_small.json",
                               "test/mesh_small.json",
-                              "test/artery_small.json"};
+                              "test/artery_small.json",
+                              "test/tap_small.json"};
 
 std::unique_ptr<Simulation> onCpu(const Scene& s, const RunState& from) {
     return makeSimdSimulation(s, from, 2);

@@ -49,7 +49,8 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Threads,
                                          "test/historical_small.json",
                                          "validation/hydrostatic.json", "validation/cavity.json",
                                          "test/solids_small.json", "test/mesh_small.json",
-                                         "test/floating_small.json", "test/artery_small.json"));
+                                         "test/floating_small.json", "test/artery_small.json",
+                                         "test/tap_small.json"));
 
 }  // namespace
 }  // namespace spindrift

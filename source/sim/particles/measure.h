@@ -3,19 +3,21 @@
 
 #include "sim/step/flow.h"
 #include "sim/particles/output_passes.h"
+#include "sim/parts/source_passes.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace spindrift::LANES {
 
-// All but the solids and the counts of steps.
-template <class Device> Measurement measureFluid(Flow<Device>& flow) {
+// All but the solids, the counts of steps, and what has come and left.
+template <class Device> Measurement measureFluid(Flow<Device>& flow, int particles) {
     const Scene& scene = flow.scene;
     const Totals t = flow.device.template sum<Totals>(
         flow.fluid.slots(), SumUp{flow.fluid.view(), scene.fluid.restDensity});
-    const double count = flow.fluidCount, n = t.mass,
-                 mass = particleMass(scene);  // n particles of the scene's fluid are as heavy
+    const double count = std::max(particles, 1), n = std::max(t.mass, 1e-9),  // none may be left
+
+        mass = particleMass(scene);  // n particles of the scene's fluid are as heavy
     const Vec3d center = (1 / n) * Vec3d{t.position[0], t.position[1], t.position[2]};
     Measurement m;
     m.dimensions = scene.simulation.dimensions;
@@ -45,6 +47,13 @@ inline void countSteps(Measurement& m, const StepState& clock, bool blockTimeSte
     m.dt = blockTimeSteps ? clock.longest : clock.dt;
     m.longestStep = std::max(clock.longest, m.dt);
     m.evaluations = blockTimeSteps ? clock.evaluations : particles * double(clock.steps);
+}
+
+inline void countComers(Measurement& m, const Scene& scene, const Tally& t) {
+    const double mass = particleMass(scene);
+    m.comesAndGoes = comesAndGoes(scene);
+    m.massIn = mass * double(t.came), m.massOut = mass * double(t.left);
+    m.massMissed = mass * double(t.missed);
 }
 
 }  // namespace spindrift::LANES

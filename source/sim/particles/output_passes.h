@@ -56,15 +56,27 @@ struct ValueRange {
     }
 };
 
-// out[id - firstId] = position and value of each particle; the range of the values comes with it.
+// Where vertices go: by ids, or where particles come and go by numbers without gaps, slot by slot.
+struct VertexPlaces {
+    Vertex* out;
+    const int* numbers;  // null: by ids
+};
+// The numbers where no slot below the last particle's is empty.
+struct NumberSlots {
+    using Index = int;
+    int* numbers;
+    HD void operator()(int i) const { numbers[i] = i; }
+};
+
+// Position and value of each particle; the range of the values comes with it.
 template <class Value> struct WriteVertices {
     Particles p;
-    Vertex* out;
+    VertexPlaces to;
     HD void addTo(ValueRange& range, int i) const {
         if (p.id[i] < 0) return;
         const Vector<real> x = load(p.position, i);
         const float value = float(Value::of(p, i));
-        out[p.id[i]] = {float(x.x), float(x.y), float(x.z), value};
+        to.out[to.numbers ? to.numbers[i] : p.id[i]] = {float(x.x), float(x.y), float(x.z), value};
         range.add({value, value});
     }
 };

@@ -23,6 +23,7 @@ struct Holdings {
     bool timeBins;                               // particles have steps of their own
     bool addsPairs, normals;  // sums for forces on top of the others; normals of the surface
     bool mixture;             // more than one fluid
+    bool comesAndGoes;        // particles do, while the run goes on
     bool viscousVolume;
     bool solvesPressure;  // of the fluid: pressures go from step to step, and what solving needs
 
@@ -79,6 +80,7 @@ inline constexpr ParticleField particleFields[] = {
                      h.keepsState&& h.densityRate, 0),
     SPINDRIFT_SCALAR(massRatio, h.mixture, h.mixture, 1),
     SPINDRIFT_SCALAR(viscosity, h.mixture, h.mixture, 0),
+    SPINDRIFT_SCALAR(heldBy, h.comesAndGoes, h.comesAndGoes, 0),
     SPINDRIFT_SCALAR(timeBin, h.isActiveInBins(), h.isActiveInBins(), resting),
     SPINDRIFT_SCALAR(mass, h.isWalls(), false, 0),
     SPINDRIFT_VECTOR(outward, h.isWalls() && (h.velocity || h.continues), false),

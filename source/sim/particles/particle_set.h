@@ -3,14 +3,16 @@
 
 #include "device/buffer.h"
 #include "core/error.h"
-#include "sim/particles/output_passes.h"
+#include "sim/particles/on_host.h"
 #include "sim/particles/particle_fields.h"
 #include "sim/particles/sort_passes.h"
 #include "sim/simulation.h"
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <iterator>
+#include <limits>
 #include <numeric>
 #include <type_traits>
 #include <utility>
@@ -45,9 +47,10 @@ public:
     void upload(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities,
                 const std::vector<float>& densities, const std::vector<int>& ids) {
         const int n = int(positions.size());
-        resize((n + clusterSize - 1) / clusterSize * clusterSize);
-        std::vector<real> x(vectorSize(slots_)), u(vectorSize(slots_)),
+        resize(std::max(wholeClusters(n), Device::recordsSteps ? reserved_ : 0));
+        std::vector<real> x(vectorSize(slots_), 2 * farAway), u(vectorSize(slots_)),
             rho(densities.begin(), densities.end());
+        rho.resize(size_t(slots_), rho.empty() ? 0 : rho[0]);
         std::vector<int> id(slots_, -1);
         for (int i = 0; i < n; ++i) {
             id[i] = ids[i];
@@ -60,6 +63,30 @@ public:
         if (kind() == Kind::Fluid) upload(&Particles::velocity, u);
         if (holds_.densityRate) upload(&Particles::density, rho);
         device_.upload(id_.data(), id.data(), id.size());
+    }
+
+    // Particles come and go from now on, in so many slots at most: no step allocates any. A device
+    // that records steps has all of them always, empty ones behind the others.
+    void comeAndGo(int slots) {
+        holds_.comesAndGoes = true;
+        reserved_ = wholeClusters(slots);
+    }
+    int reserved() const { return reserved_; }
+    // Empty slots for `count` particles behind the others, until the next sort. Returns the first,
+    // in memory of the device.
+    const int* makeRoom(int count) {
+        if constexpr (!Device::recordsSteps) {
+            const int slots = slots_ + wholeClusters(count);
+            CHECK(slots <= reserved_);
+            resize(slots);
+        }
+        return cellStart_.data() + cellStart_.size() - 2;
+    }
+    // Which point of a source holds each, in the order of the upload just done.
+    void setHeldBy(const std::vector<int>& points) {
+        std::vector<real> values(points.begin(), points.end());
+        values.resize(size_t(slots_), 0);
+        upload(&Particles::heldBy, values);
     }
 
     // What each particle of a mixture is, by ids from 0 on: see View.
@@ -78,9 +105,12 @@ public:
     // Particles of one cell end up beside each other, cells of one row too.
     void sort(const Grid& grid) {
         const int rows = grid.cells.y * grid.cells.z;
-        key_.resize(slots_);
-        cellStart_.resize(size_t(rows) * grid.cells.x + 1);
-        device_.forEach(slots_, FindCell{view(), grid, key_.data()});
+        const size_t cells = size_t(rows) * grid.cells.x;
+        fit(key_, slots_, reserved_);
+        fit(order_, slots_, reserved_);
+        cellStart_.resize(cells + 2);
+        device_.forEach(slots_,
+                        FindCell{view(), grid, key_.data(), Device::dropsItems ? -1 : int(cells)});
         const int slots = device_.sortByCell(slots_, key_.data(), rows, grid.cells.x, clusterSize,
                                              cellStart_.data(), order_);
         resizeSorted(slots);
@@ -129,33 +159,39 @@ public:
         for (Numbers& field : sorted_) field.release();
     }
 
-    // Relative to the domain's lower corner, in the order of ids from firstId on: bit by bit what
-    // upload() took, or what became of it.
-    std::vector<Vec3> positions(int count, int firstId) const {
-        return inOrder(&Particles::position, count, firstId);
-    }
-    std::vector<Vec3> velocities(int count, int firstId) const {
-        return inOrder(&Particles::velocity, count, firstId);
-    }
+    // Relative to the domain's lower corner, in the order of ids: bit by bit what upload() took, or
+    // what became of it.
+    std::vector<Vec3> positions() const { return inOrder(&Particles::position); }
+    std::vector<Vec3> velocities() const { return inOrder(&Particles::velocity); }
     // Empty where density is not carried, and where pressure is not solved for.
-    std::vector<float> densities(int count) const {
-        return holds_.densityRate ? inOrder(&Particles::density, count) : std::vector<float>{};
+    std::vector<float> densities() const {
+        return holds_.densityRate ? inOrder(&Particles::density) : std::vector<float>{};
     }
-    std::vector<float> pressures(int count) const {
-        return holds_.solvesPressure ? inOrder(&Particles::pressureOverRho2, count)
-                                     : std::vector<float>{};
+    std::vector<float> pressures() const {
+        return holds_.solvesPressure ? inOrder(&Particles::pressureOverRho2) : std::vector<float>{};
     }
-    // Where they are solved for, p / rho^2 by ids from 0 on.
-    void setPressures(const std::vector<float>& pressures) {
-        std::vector<real> values(size_t(slots_), 0);
+    // Empty where none come and go.
+    std::vector<int> ids() const {
+        std::vector<int> out;
+        if (!holds_.comesAndGoes) return out;
         const std::vector<int> id = copy(id_);
-        for (int i = 0; i < slots_; ++i)
-            if (id[i] >= 0 && size_t(id[i]) < pressures.size()) values[i] = pressures[id[i]];
+        for (const int slot : slotsInOrder(id)) out.push_back(id[size_t(slot)]);
+        return out;
+    }
+    std::vector<int> heldBy() const {
+        if (!holds_.comesAndGoes) return {};
+        const std::vector<float> points = inOrder(&Particles::heldBy);
+        return {points.begin(), points.end()};
+    }
+    // Where they are solved for, p / rho^2 in the order of the upload just done.
+    void setPressures(const std::vector<float>& pressures) {
+        std::vector<real> values(pressures.begin(), pressures.end());
+        values.resize(size_t(slots_), 0);
         upload(&Particles::pressureOverRho2, values);
     }
 
     // In the order of ids, in world coordinates.
-    std::vector<Particle> download(int count, Vec3 origin) const {
+    std::vector<Particle> download(Vec3 origin) const {
         std::vector<int> id = copy(id_);
         std::vector<real> x = copy(now(&Particles::position)), u = copy(now(&Particles::velocity)),
                           a = copy(now(&Particles::acceleration)),
@@ -163,16 +199,16 @@ public:
                           term = copy(now(&Particles::pressureOverRho2)),
                           ratio = copy(now(&Particles::massRatio));
         const Particles host = onHost(slots_, id, x, u, a, rho, term, ratio);
-        std::vector<Particle> out(count);
-        for (int i = 0; i < slots_; ++i)
-            if (id[i] >= 0) out[id[i]] = describe(host, i, origin);
+        std::vector<Particle> out;
+        for (const int slot : slotsInOrder(id)) out.push_back(describe(host, slot, origin));
         return out;
     }
-    // Only the slots around the particle with this id are fetched.
+    // Only the slots around the particle with this id are fetched. Throws Error (Usage) where there
+    // is none.
     Particle downloadOne(int id, Vec3 origin) const {
         const int slot =
             device_.template sum<SlotFound>(slots_, FindSlot{id_.data(), id}).number - 1;
-        CHECK(slot >= 0 && slot < slots_);
+        if (slot < 0) throw Error(Failure::Usage, "particle: the run has none of that number");
         const int first = slot / clusterSize * clusterSize;
         auto vectors = [&](VectorField Particles::*field) {
             return copy(now(field), vectorOffset(first, 0), vectorSize(clusterSize));
@@ -194,13 +230,19 @@ private:
     static constexpr size_t fieldCount = std::size(particleFields);
     using Fields = std::array<Numbers, fieldCount>;
 
-    std::vector<float> inOrder(ScalarField Particles::*field, int count) const {
+    static int wholeClusters(int particles) {
+        return (particles + clusterSize - 1) / clusterSize * clusterSize;
+    }
+    std::vector<float> inOrder(ScalarField Particles::*field) const {
         const std::vector<real> values = copy(now(field));
-        const std::vector<int> id = copy(id_);
-        std::vector<float> out(count);
-        for (int i = 0; i < slots_; ++i)
-            if (id[i] >= 0) out[id[i]] = float(values[i]);
+        std::vector<float> out;
+        for (const int slot : slotsInOrder(copy(id_))) out.push_back(float(values[size_t(slot)]));
         return out;
+    }
+    // So many elements, of a buffer that has room for as many as there may ever be.
+    template <class T> static void fit(Buffer<T, Device>& buffer, size_t n, size_t most) {
+        buffer.resize(std::max(n, most));
+        buffer.resize(n);
     }
     Kind kind() const { return holds_.kind; }
     // f(field, its number) for each field that there is.
@@ -212,10 +254,10 @@ private:
     }
     void resize(int slots) {
         slots_ = slots;
-        id_.resize(slots);
+        fit(id_, slots, reserved_);
         forFields([&](const ParticleField& field, size_t k) {
             if (field.held(holds_))
-                now_[k].resize(numbersIn(field, slots));
+                fit(now_[k], numbersIn(field, slots), numbersIn(field, reserved_));
             else
                 now_[k].release();
         });
@@ -225,10 +267,10 @@ private:
             active_.release();
     }
     void resizeSorted(int slots) {
-        sortedId_.resize(slots);
+        fit(sortedId_, slots, reserved_);
         forFields([&](const ParticleField& field, size_t k) {
             if (field.sorted(holds_))
-                sorted_[k].resize(numbersIn(field, slots));
+                fit(sorted_[k], numbersIn(field, slots), numbersIn(field, reserved_));
             else
                 sorted_[k].release();
         });
@@ -271,33 +313,12 @@ private:
     template <size_t... k> static Fields makeFields(Device& device, std::index_sequence<k...>) {
         return {((void)k, Numbers(device))...};
     }
-    static Particles onHost(int slots, std::vector<int>& id, std::vector<real>& x,
-                            std::vector<real>& u, std::vector<real>& a, std::vector<real>& rho,
-                            std::vector<real>& term, std::vector<real>& ratio) {
-        Particles p{};
-        p.slots = slots, p.id = id.data();
-        p.position = {x.data()}, p.velocity = {u.data()}, p.acceleration = {a.data()};
-        p.density = {rho.data()}, p.pressureOverRho2 = {term.data()},
-        p.massRatio = {ratio.empty() ? nullptr : ratio.data()};
-        return p;
-    }
-    static Particle describe(const Particles& host, int i, Vec3 origin) {
-        auto toVec3d = [](Vector<real> v) { return Vec3d{double(v.x), double(v.y), double(v.z)}; };
-        return {host.id[i],
-                toVec3d(load(host.position, i)) + toDouble(origin),
-                toVec3d(load(host.velocity, i)),
-                toVec3d(load(host.acceleration, i)),
-                double(densityOf(host, i)),
-                double(pressureOf(host, i))};
-    }
-    std::vector<Vec3> inOrder(VectorField Particles::*field, int count, int firstId) const {
+    std::vector<Vec3> inOrder(VectorField Particles::*field) const {
         std::vector<real> values = copy(now(field));
-        const std::vector<int> id = copy(id_);
-        std::vector<Vec3> out(count);
-        for (int i = 0; i < slots_; ++i) {
-            if (id[i] < 0) continue;
-            const Vector<real> v = load(VectorField{values.data()}, i);
-            out[id[i] - firstId] = {float(v.x), float(v.y), float(v.z)};
+        std::vector<Vec3> out;
+        for (const int slot : slotsInOrder(copy(id_))) {
+            const Vector<real> v = load(VectorField{values.data()}, slot);
+            out.push_back({float(v.x), float(v.y), float(v.z)});
         }
         return out;
     }
@@ -313,7 +334,7 @@ private:
 
     Device& device_;
     Holdings holds_;
-    int slots_ = 0, side_ = 0;
+    int slots_ = 0, side_ = 0, reserved_ = 0;
     Buffer<int, Device> id_{device_}, sortedId_{device_}, key_{device_}, order_{device_},
         cellStart_{device_};
     Buffer<uint8_t, Device> active_{device_};

@@ -37,7 +37,8 @@ inline Range withoutOutliers(ValueRange range, const std::vector<int>& counts, b
     return {range.low + bin * float(low), std::min(range.high, range.low + bin * float(high + 1))};
 }
 
-template <class Value, class Device> Range write(Device& device, const Particles& p, Vertex* out) {
+template <class Value, class Device>
+Range write(Device& device, const Particles& p, VertexPlaces out) {
     const auto range = device.template sum<ValueRange>(p.slots, WriteVertices<Value>{p, out});
     if (!(range.high > range.low)) return {range.low, range.high};
     const std::vector<int> counts = device.histogram(p.slots, CountValues<Value>{p, range});
@@ -46,7 +47,7 @@ template <class Value, class Device> Range write(Device& device, const Particles
 
 // Found when a picture asks. (With block time steps not where fluid rests: lists are missing
 // there.)
-template <class Device> Range writeSurface(Flow<Device>& flow, Vertex* out) {
+template <class Device> Range writeSurface(Flow<Device>& flow, VertexPlaces out) {
     flow.template onPairsOrFluid<ComputeNormals>();
     flow.template onFluid<TagSurface>();
     flow.template onPairsOrFluid<LeaveOutSpray>();
@@ -54,7 +55,7 @@ template <class Device> Range writeSurface(Flow<Device>& flow, Vertex* out) {
 }
 
 // Of what the pass finds for each particle from all its neighbours.
-template <class Pass, class Device> Range writeFound(Flow<Device>& flow, Vertex* out) {
+template <class Pass, class Device> Range writeFound(Flow<Device>& flow, VertexPlaces out) {
     flow.search.amongFluid(flow.view(), [&](const View& v) {
         if constexpr (requires { typename Pass::Parameters; })
             flow.device.forEach(flow.fluid.slots(), Pass{v, Pass::Parameters::of(flow.model)});
@@ -65,7 +66,7 @@ template <class Pass, class Device> Range writeFound(Flow<Device>& flow, Vertex*
 }
 
 // What asks for neighbours.
-template <class Device> Range writeFoundOf(Flow<Device>& flow, Vertex* out, ColorBy by) {
+template <class Device> Range writeFoundOf(Flow<Device>& flow, VertexPlaces out, ColorBy by) {
     flow.showsFound = true;
     flow.addBuffers();
     switch (by) {
@@ -82,7 +83,7 @@ template <class Device> Range writeFoundOf(Flow<Device>& flow, Vertex* out, Colo
     }
 }
 
-template <class Device> Range writeFluid(Flow<Device>& flow, Vertex* out, ColorBy by) {
+template <class Device> Range writeFluid(Flow<Device>& flow, VertexPlaces out, ColorBy by) {
     const Particles p = flow.fluid.view();
     Device& device = flow.device;
     switch (by) {

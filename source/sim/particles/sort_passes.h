@@ -8,18 +8,19 @@ namespace spindrift::LANES {
 // Empty slots lie beyond this coordinate, m.
 inline constexpr real farAway = 1e6;
 
-// Sort key: the particle's cell, or -1 for an empty slot. One that is nowhere (not finite) has no
-// neighbours in any cell; such particles are spread, because all of them in one cell would take
+// Sort key: the particle's cell, or `none` for an empty slot. One that is nowhere (not finite) has
+// no neighbours in any cell; such particles are spread, because all of them in one cell would take
 // forever.
 struct FindCell {
     using Index = int;
     Particles p;
     Grid grid;
     int* key;
+    int none;
     HD void operator()(int i) const {
         const Vector<real> x = load(p.position, i);
         const bool somewhere = dot(x, x) - dot(x, x) == 0;
-        key[i] = p.id[i] < 0 ? -1
+        key[i] = p.id[i] < 0 ? none
                  : somewhere ? grid.cell(x)
                              : i % (grid.cells.x * grid.cells.y * grid.cells.z);
     }

@@ -64,6 +64,8 @@ struct Particles {
                                // from it are those of the same particle of the scene's fluid, which
                                // has its volume and pressure; forces are divided by the ratio
     ScalarField viscosity;     // of a mixture, Pa s
+    ScalarField heldBy;        // where particles come and go: the source's point, from 1 on, before
+                               // whose mouth it is still held, or 0
     ScalarField timeBin;       // local steps only: how short a particle's own step is, longest /
                                // 2^level, or how it rests
     uint8_t* active;           // local steps only: per cluster, whether it is evaluated now

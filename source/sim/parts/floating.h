@@ -26,7 +26,8 @@ public:
         room_.resize(1);
         takeInHand(-1);
         if (solids.floats())
-            bounces((flow.fluidCount + clusterSize - 1) / clusterSize * clusterSize);
+            bounces(std::max((flow.fluidCount + clusterSize - 1) / clusterSize * clusterSize,
+                             flow.fluid.reserved()));
     }
     // Null where none floats.
     const RigidBody* bodies() const { return solids_.floats() ? bodies_.data() : nullptr; }

@@ -51,6 +51,11 @@ struct Part {
     void addRates(Plan&) {}
     void collide(Plan&) {}
     void weigh(Plan&, Moment) {}
+    // Where pressure follows from density, between the two, or after it where it is summed up with
+    // it.
+    void borrowPressure(Plan&, Initial) {}
+    // After accelerations, those by pressure or shifts were found: what doesn't follow them.
+    void holdBack(Plan&, Initial) {}
 };
 
 }  // namespace spindrift::LANES

@@ -3,6 +3,7 @@
 
 #include "scene/formulation.h"
 #include "scene/motion.h"
+#include "scene/sources.h"
 #include "sim/particles/view.h"
 #include "sim/physics/lattice_sums.h"
 #include "sim/run_state.h"
@@ -90,7 +91,7 @@ struct Ratios {
 };
 inline Ratios densityRatios(const Scene& s) {
     Ratios r{1e30, 0};
-    for (const Body& body : s.fluid.bodies) {
+    for (const Body& body : fluidsOf(s.fluid)) {
         const double ratio = double(restDensity(s, body)) / s.fluid.restDensity;
         r.least = std::min(r.least, ratio), r.most = std::max(r.most, ratio);
     }

@@ -1,6 +1,7 @@
 // Terms of viscosity.
 #pragma once
 
+#include "scene/sources.h"
 #include "sim/physics/term.h"
 
 #include <algorithm>
@@ -43,7 +44,7 @@ inline double viscousStep(const Model& m) {
     const double d = m.dimensions(),
                  along = viscosityForm(s) == ViscosityForm::Monaghan ? d / (d + 2) : 1;
     double step = 1e9;
-    for (const Body& body : s.fluid.bodies)
+    for (const Body& body : fluidsOf(s.fluid))
         if (viscosity(s, body) > 0)
             step = std::min(step, along * 0.125 * m.h() * m.h() * restDensity(s, body) /
                                       (viscosity(s, body) * (isMultiFluid(s) ? 2 : 1)));

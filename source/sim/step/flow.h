@@ -167,6 +167,11 @@ template <class Device> struct Flow {
         }
         fluid.fillMixture(ratios, viscosities);
     }
+    void uploadFluid(const RunState& state) {
+        const Placement& p = state.particles;
+        p.ids.empty() ? fluid.upload(p.positions, p.velocities, densitiesOf(state), 0)
+                      : fluid.upload(p.positions, p.velocities, densitiesOf(state), p.ids);
+    }
     void uploadWalls() { walls.upload(wallsAtHome, {}, {}, fluidCount); }
     void addBuffers() {
         fluid.addForces(usesHalfLists() && hasMixingForces(scene),
@@ -176,7 +181,7 @@ template <class Device> struct Flow {
     Device device;
     Scene scene;
     FluidExtent extent;
-    int fluidCount, wallCount;
+    int fluidCount, wallCount;      // as it began; walls have ids from fluidCount on
     std::vector<Vec3> wallsAtHome;  // as in Placement
     std::vector<int> solidSizes;
     std::vector<uint16_t> bodies;  // of a mixture: which one each particle is of

@@ -108,6 +108,7 @@ private:
         add("equation of state", onFluid<ApplyEquationOfState>);
         add("walls", wallPass(), Initial::No, whyNoWallPressure());
         add("pressure", onFluid<ComputeForces<K, inner, TermList<PressureForce>, Forces::Alone>>);
+        holdBack(Initial::No);
         plan_.add(
             "extremes", [&flow = flow_] { boundSplitMove(flow); }, Initial::No,
             keepsLists ? "" : noLists);
@@ -119,6 +120,7 @@ private:
         evaluateForces(Initial::Yes);
         weigh(Moment::ForcesKnown);
         add("gradients", onPairsOrFluid<SumGradients<K, inner>>);
+        holdBack(Initial::No);
         chooseStep();
         weigh(Moment::BeforeKick);
         add("kick", onFluid<Integrate<Kick>>);
@@ -126,6 +128,7 @@ private:
         plan_.add("begin solve", [&solver = solver_] { solver.begin(); });
         plan_.beginLoop();
         add("pressure forces", onPairsOrFluid<AccelerateByPressure<K, inner>>);
+        holdBack(Initial::No);
         add("relax pressure", onPairsOrFluid<RelaxPressure<K, inner>>);
         plan_.add("error", [&solver = solver_] { solver.findError(); });
         plan_.endLoop([&solver = solver_] { return !solver.goesOn(); }, solver_.goesOnFlag());
@@ -183,8 +186,10 @@ private:
                 forEachPart(parts, [](auto& part) { part.findNeighbours(); });
             },
             initial, keepsLists ? "" : noLists);
-        carriesDensity(scene_) ? add("equation of state", onFluid<ApplyEquationOfState>, initial)
-                               : add("density", densityPass(), initial);
+        if (!carriesDensity(scene_)) add("density", densityPass(), initial);
+        forEachPart(parts_, [&](auto& part) { part.borrowPressure(plan_, initial); });
+        if (carriesDensity(scene_))
+            add("equation of state", onFluid<ApplyEquationOfState>, initial);
         add("walls", wallPass(), initial, whyNoWallPressure());
         add("surroundings",
             carriesDensity(scene_) ? onFluid<WeighViscosity<K, Lists::All>>
@@ -192,6 +197,10 @@ private:
             initial, whyViscosityIsNotWeighed(flow_));
         add("forces", forcePass(), initial);
         addPartForces(initial, false);
+        if (!solves()) holdBack(initial);
+    }
+    void holdBack(Initial initial) {
+        forEachPart(parts_, [&](auto& part) { part.holdBack(plan_, initial); });
     }
     // Of parts that feel the fluid's pressure when that is known: after it has been solved for.
     void addPartForces(Initial initial, bool isSolved) {
@@ -244,6 +253,7 @@ private:
     void addRate() {
         forEachPart(parts_, [&](auto& part) { part.addRates(plan_); });
         add(shiftsParticles(scene_) ? "transport" : "density rate", ratePass());
+        if (shiftsParticles(scene_)) holdBack(Initial::No);
     }
     void end() {
         noteTerms(Joined<OptionalTerms, Mixing>{});

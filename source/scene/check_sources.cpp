@@ -1,0 +1,116 @@
+#include "scene/check_sources.h"
+
+#include "scene/check_bodies.h"
+#include "scene/convex.h"
+#include "scene/formulation.h"
+#include "scene/schema.h"
+#include "scene/sources.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace spindrift {
+namespace {
+
+// What can't have particles that come and go, or has not been tried with them.
+void checkRest(const Scene& scene) {
+    const std::string list = scene.sources.empty() ? "sinks" : "sources";
+    if (factsOf(scene).isHistorical || factsOf(scene).fillsSpace)
+        refuse(list, fmt::format("are not of {}, whose fluid stays what it is; use "
+                                 "simulation.formulation delta_sph, delta_plus, wcsph or "
+                                 "incompressible",
+                                 enumNames(Formulation())[size_t(scene.simulation.formulation)]));
+    if (scene.time.mode == TimeMode::Local)
+        refuse(list, "need the same step everywhere; set time.mode to cfl");
+    if (isMultiFluid(scene))
+        refuse(list, "are for one fluid; leave rest_density and viscosity of the bodies out");
+    if (scene.output.energyBalance)
+        refuse("output.energy_balance", "is of fluid that stays; leave " + list + " or it out");
+    if (!scene.objects.empty())
+        refuse(list, "don't go with elastic objects; leave one of them out");
+}
+
+void checkNumbers(const Scene& scene, const Source& source, const std::string& path) {
+    const int given = (source.velocity > 0) + (source.flow > 0) + !source.path.empty();
+    if (given == 0) refuse(path, "gives nothing; set velocity, flow or path");
+    if (given > 1)
+        refuse(path, "says more than once how much it gives; keep one of velocity, flow and path");
+    if (length(source.normal) == 0) refuse(path + ".normal", "has no direction; name one");
+    if (scene.simulation.dimensions == 2 && source.normal.z != 0)
+        refuse(path + ".normal", "there is no z in two dimensions; set that to 0");
+    if (scene.simulation.dimensions == 2 && source.mouth == Mouth::Disc)
+        refuse(path + ".mouth", "a disc has three dimensions; use rectangle");
+    if (source.stop > 0 && source.stop <= source.start)
+        refuse(path + ".stop", fmt::format("{} s is not after start, {} s; make it later",
+                                           source.stop, source.start));
+    const float extent = source.mouth == Mouth::Disc        ? 2 * source.radius
+                         : scene.simulation.dimensions == 2 ? source.width
+                                                            : std::min(source.width, source.height);
+    if (extent < scene.simulation.spacing)
+        refuse(path, fmt::format("its mouth of {} m is narrower than simulation.spacing, {} m; "
+                                 "widen it or lower the spacing",
+                                 extent, scene.simulation.spacing));
+    try {
+        scheduleOf(scene, source);
+    } catch (const Error& error) { refuse(path + ".path", error.what()); }
+    const SourceLattice lattice = latticeOf(scene, source);
+    const double fastest = largestSpeed(scene, source);
+    if (scene.time.mode == TimeMode::Fixed && fastest * scene.time.step > lattice.apart)
+        refuse("time.step", fmt::format("fluid of {} goes on by more than a spacing in {} s; lower "
+                                        "it below {:.2g} s, or set time.mode to cfl",
+                                        path, scene.time.step, lattice.apart / fastest));
+}
+
+// All that is held lies behind the mouth: in the domain, and not in a solid.
+void checkPlace(const Scene& scene, const Source& source, const std::string& path) {
+    const SourceLattice lattice = latticeOf(scene, source);
+    const double dx = scene.simulation.spacing;
+    std::vector<Convex> solids;
+    for (const Solid& solid : scene.solids)
+        solids.push_back(convexOf(solid, scene.simulation.dimensions));
+    for (const SourceLattice::Point& p : lattice.points)
+        for (int layer = 0; layer < lattice.layers; ++layer) {
+            const Vec3d at = p.at - (layer + 0.5) * lattice.apart * lattice.normal;
+            for (int k = 0; k < scene.simulation.dimensions; ++k) {
+                const double low = scene.domain.min[k], high = scene.domain.max[k];
+                if (at[k] < low + 0.4 * dx || at[k] > high - 0.4 * dx)
+                    refuse(path + ".center",
+                           fmt::format("what is about to come takes {:.4g} m behind the mouth, and "
+                                       "that reaches {} = {:.4g} m, beyond the domain's {} to {} m "
+                                       "less half a spacing; move it inside",
+                                       lattice.depth(), "xyz"[k], at[k], low, high));
+            }
+            for (size_t s = 0; s < solids.size(); ++s)
+                if (solids[s].nearest(at - solids[s].middle).distance < 0.25 * dx)
+                    refuse(path + ".center",
+                           fmt::format("what is about to come takes {:.4g} m behind the mouth, and "
+                                       "solids[{}] is there, at ({:.4g}, {:.4g}, {:.4g}) m; leave "
+                                       "half a spacing between them",
+                                       lattice.depth(), s, at.x, at.y, at.z));
+        }
+}
+
+}  // namespace
+
+void checkSources(const Scene& scene) {
+    if (!comesAndGoes(scene)) return;
+    checkRest(scene);
+    for (size_t i = 0; i < scene.sources.size(); ++i) {
+        const std::string path = fmt::format("sources[{}]", i);
+        checkNumbers(scene, scene.sources[i], path);
+        checkPlace(scene, scene.sources[i], path);
+    }
+    for (size_t i = 0; i < scene.sinks.size(); ++i)
+        for (int k = 0; k < scene.simulation.dimensions; ++k) {
+            const Sink& s = scene.sinks[i];
+            if (!(s.max[k] > s.min[k]))
+                refuse(fmt::format("sinks[{}].max", i),
+                       fmt::format("{} = {} m is not above min {} = {} m; make it larger", "xyz"[k],
+                                   s.max[k], "xyz"[k], s.min[k]));
+            if (s.max[k] < scene.domain.min[k] || s.min[k] > scene.domain.max[k])
+                refuse(fmt::format("sinks[{}]", i),
+                       fmt::format("lies outside of the domain along {}; move it", "xyz"[k]));
+        }
+}
+
+}  // namespace spindrift
