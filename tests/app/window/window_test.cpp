@@ -121,6 +121,12 @@ TEST_F(WindowTest, KeysChooseColoursWallsAndPanel) {
     EXPECT_GT(difference(velocity, settled(window)), seen) << "S shows the fluid's surface";
     window.act("key s");
     EXPECT_LT(difference(velocity, settled(window)), 1e-4);
+    for (const char* key : {"o", "c", "a", "c", "c", "c", "a", "o"}) {  // and all the way back
+        const Image last = settled(window);
+        window.act(std::string("key ") + key);
+        EXPECT_GT(difference(last, settled(window)), 1e-5) << key;
+    }
+    EXPECT_LT(difference(velocity, settled(window)), 1e-4);
     window.act("key Tab");
     EXPECT_GT(settled(window).width, velocity.width) << "without the panel the picture is wider";
     window.act("key Tab");
@@ -130,7 +136,7 @@ TEST_F(WindowTest, KeysChooseColoursWallsAndPanel) {
 TEST_F(WindowTest, HelpPanelAndUnknownKeysDoNotTouchThePicture) {
     Window window = paused();
     const Image before = settled(window);
-    window.act("key h key F1 key g key x key z");
+    window.act("key h key F1 key g key w key k");
     EXPECT_EQ(settled(window), before);
     EXPECT_TRUE(window.running());
 }
