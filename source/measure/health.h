@@ -39,9 +39,7 @@ public:
     // After GaveUp: what is to blame, the worst first; those without a finite place with their last
     // one.
     const std::vector<Particle>& culprits() const { return culprits_; }
-    const RunState& lastGood() const {
-        return kept_[1].clock.steps == 0 ? kept_[0] : kept_[1];
-    }
+    const RunState& lastGood() const { return kept_[1].clock.steps == 0 ? kept_[0] : kept_[1]; }
     int retries() const { return allRetries_; }  // in the whole run
 
 private:

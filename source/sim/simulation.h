@@ -74,8 +74,8 @@ struct Measurement {
     bool comesAndGoes = false;                       // fluid does, as these say:
     double massIn = 0, massOut = 0, massMissed = 0;  // kg since the beginning, that came, that
                                                      // left, that could not come for want of room
-    std::vector<SolidMeasurement> solids;  // one for each of the scene's
-    bool finite = true;                    // no NaN or infinity in position, velocity, density
+    std::vector<SolidMeasurement> solids;            // one for each of the scene's
+    bool finite = true;  // no NaN or infinity in position, velocity, density
 };
 
 // One particle as the picker and tests see it. Position in world coordinates.
