@@ -60,6 +60,30 @@ void addLackOfSurface(const Scene& scene, std::vector<std::string>& out) {
             "leave room above the fluid");
 }
 
+// Other fluid is kept out of what is held before a mouth, but by no pressure.
+void addMouths(const Scene& scene, std::vector<std::string>& out) {
+    const double dx = scene.simulation.spacing;
+    const int dimensions = scene.simulation.dimensions;
+    for (size_t i = 0; i < scene.sources.size(); ++i) {
+        const SourceLattice lattice = latticeOf(scene, scene.sources[i]);
+        const Vec3d behind =
+            toDouble(scene.sources[i].center) - (lattice.depth() + dx) * lattice.normal;
+        const auto holds = [&](const Form& form) {
+            if (form.shape == Shape::File) return false;
+            const Convex shape = convexOf(form, dimensions);
+            return shape.nearest(behind - shape.middle).distance < 0;
+        };
+        const auto any = [&](const auto& forms) {
+            return std::any_of(forms.begin(), forms.end(), holds);
+        };
+        if (any(scene.fluid.bodies) && !any(scene.solids))
+            out.push_back(fmt::format(
+                "{}: fluid lies behind its mouth, and is thrown about where more comes; put "
+                "obstacles behind and beside the {:.3g} m before the mouth",
+                nameOf(scene, scene.sources[i]), lattice.depth()));
+    }
+}
+
 // m, of a solid where fluid can be on both sides of it.
 std::optional<double> thicknessOf(const Scene& scene, const Solid& solid, double most) {
     if (solid.shape == Shape::Plane) return {};
@@ -154,6 +178,7 @@ std::vector<std::string> remarksOn(const Scene& scene) {
             factsOf(scene).isHistorical ? ", in another formulation" : ""));
     addBodies(scene, out);
     addLackOfSurface(scene, out);
+    addMouths(scene, out);
     std::vector<Convex> shapes;
     for (const Solid& solid : scene.solids)
         shapes.push_back(convexOf(solid, scene.simulation.dimensions));

@@ -224,7 +224,7 @@ void fillMouths(const Scene& scene, Placement& out) {
 }
 
 MouthRoom::MouthRoom(const Scene& scene) {
-    const double margin = 0.25 * scene.simulation.spacing;
+    const double margin = 0.49 * scene.simulation.spacing;
     for (const Source& source : scene.sources) {
         const SourceLattice lattice = latticeOf(scene, source);
         const Axes axes = axesOf(scene, source);

@@ -119,9 +119,9 @@ private:
         const int face = int(faces.size()), firstKey = int(keys.size());
         keys.insert(keys.end(), own.begin(), own.end());
         const bool flat = scene.simulation.dimensions == 2, round = source.mouth == Mouth::Disc;
-        // What is not held keeps half a spacing off where a particle is about to come, and nearly
-        // so on the sides.
-        const double apart = lattice.apart, beside = 0.25 * apart;
+        // What is not held keeps half a spacing off on all sides: a particle that comes has none
+        // nearer than a spacing.
+        const double apart = lattice.apart, beside = 0.49 * apart;
         faces.push_back({vector(toDouble(source.center) - low), vector(lattice.normal),
                          vector(lattice.across), vector(lattice.up),
                          real(source.width / 2 + beside),

@@ -57,7 +57,7 @@ TEST(Schema, UnitsHaveOneSpelling) {
 TEST(Schema, EveryFieldOfASceneHasItsLine) {
     Scene scene;
     scene.fluid.bodies.clear();
-    const int structs = 15;  // window ... output and the lists, each one field of Scene
+    const int structs = 17;  // window ... output and the lists, each one field of Scene
     const int fields =
         fieldCount<Scene>() - structs + fieldCount<Window>() + fieldCount<Compute>() +
         fieldCount<SimulationKnobs>() + fieldCount<Domain>() + fieldCount<Walls>() +
@@ -73,6 +73,8 @@ TEST(Schema, EveryFieldOfASceneHasItsLine) {
     EXPECT_EQ(memberKnobs<Object>(), fieldCount<Object>());
     EXPECT_EQ(memberKnobs<Grip>(), fieldCount<Grip>());
     EXPECT_EQ(memberKnobs<Cut>(), fieldCount<Cut>());
+    EXPECT_EQ(memberKnobs<Source>(), fieldCount<Source>());
+    EXPECT_EQ(memberKnobs<Sink>(), fieldCount<Sink>());
     EXPECT_EQ(memberKnobs<Probe>(), fieldCount<Probe>());
 }
 
