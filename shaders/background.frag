@@ -32,7 +32,8 @@ void main() {
         // How far one pixel reaches on the ground.
         vec2 pixel = max(fwidth(at), 1e-6);
         float grid = 0.060 * line(at, pixel) + 0.055 * line(0.2 * at, 0.2 * pixel);
-        shade += light ? -fade * vec3(0.02 + 1.6 * grid) : fade * (vec3(0.050, 0.056, 0.066) + grid);
+        shade += light ? -fade * vec3(0.02 + 1.6 * grid)
+                       : fade * (vec3(0.050, 0.056, 0.066) + grid);
         shade *= 1.0 - (light ? 0.12 : 0.45) * fade * shadow;
     }
     // Noise of half a step keeps the gradient free of bands.

@@ -3,12 +3,15 @@ layout(location = 0) in vec4 vertex;   // position, value
 layout(binding = 0) uniform sampler2D tables;
 layout(binding = 1) uniform sampler2D tilesBefore;
 layout(binding = 2) uniform sampler2D tilesNow;
-layout(location = 0) uniform bool second;   // draws those that the first call, with tilesBefore, left out wrongly
+// Draws those that the first call, with tilesBefore, left out wrongly.
+layout(location = 0) uniform bool second;
 
 layout(location = 0) flat out vec4 tint;    // linear colour, opacity
 layout(location = 1) flat out vec3 shape;   // square / sphere, its radius in px and in depth
 
-float pixelsOf(float radius, vec4 place) { return max(radius * frame.particle.z / max(divisor(-place.z), 1e-6), frame.particle.y); }
+float pixelsOf(float radius, vec4 place) {
+    return max(radius * frame.particle.z / max(divisor(-place.z), 1e-6), frame.particle.y);
+}
 
 // In clip space, of the sphere's nearest point.
 float nearestDepth(float radius, vec4 place) {
@@ -19,7 +22,8 @@ float nearestDepth(float radius, vec4 place) {
 // Whether all of a sphere lies behind what the tiles say, those within `reach` (px) of its middle.
 bool isHidden(sampler2D tiles, vec4 place, float radius, float reach) {
     float nearest = nearestDepth(radius, place), depth = 0.5 * nearest + 0.5 - 1e-6;
-    if (!(nearest > -1.0) || reach > 3.0 * float(tileSize)) return false;   // near and large: hardly ever hidden
+    // Near and large: hardly ever hidden.
+    if (!(nearest > -1.0) || reach > 3.0 * float(tileSize)) return false;
     vec4 clip = frame.projection * place;
     vec2 middle = (0.5 * clip.xy / clip.w + 0.5) * frame.picture.xy;
     ivec2 last = textureSize(tiles, 0) - 1;
@@ -31,11 +35,12 @@ bool isHidden(sampler2D tiles, vec4 place, float radius, float reach) {
     return true;
 }
 
-// Whether this call leaves the sphere to the other one, or to nobody. What the picture before says of the middle is a guess, right or
-// wrong; what this one says is exact.
+// Whether this call leaves the sphere to the other one, or to none. What the picture before says of
+// the middle is a guess, right or wrong; what this one says is exact.
 bool isLeftOut(vec4 place, float radius) {
     bool guess = isHidden(tilesBefore, frame.viewBefore * vec4(vertex.xyz, 1.0), radius, 0.0);
-    return second ? !guess || isHidden(tilesNow, place, radius, pixelsOf(radius, place) + 1.5) : guess;
+    if (!second) return guess;
+    return !guess || isHidden(tilesNow, place, radius, pixelsOf(radius, place) + 1.5);
 }
 
 void main() {
@@ -43,7 +48,8 @@ void main() {
     vec4 place = frame.view * vec4(vertex.xyz, 1.0);
     bool solid = wall && vertex.w > 0.5, elastic = wall && vertex.w > 1.5;
     float radius = frame.particle.x * (elastic ? vertex.w - 2.0 : wall && !solid ? 0.4 : 1.0);
-    bool shown = wall ? frame.clipLow.w < 0.5 || isInside(vertex.xyz) : isShown(vertex.xyz, vertex.w);
+    bool shown = wall ? frame.clipLow.w < 0.5 || isInside(vertex.xyz)
+                      : isShown(vertex.xyz, vertex.w);
     if (!shown || isLeftOut(place, radius)) {
         gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
         return;

@@ -123,7 +123,10 @@ void Frame::update(Simulation& simulation, const Scene& scene) {
     objectCount_ = simulation.objectParticleCount();
     vertices_.resize(fluidCount_ + wallCount_ + objectCount_);
     seen_ = write(simulation, scene.view.colorBy);
-    run_[scene.view.colorBy].add(time, seen_);
+    if (fluidCount_ == 0 || seen_.max < seen_.min)
+        seen_ = {0, 0};  // there is nothing to see yet
+    else
+        run_[scene.view.colorBy].add(time, seen_);
     lookInside(simulation, scene);
     followPath(simulation, scene);
 }
@@ -132,10 +135,12 @@ void Frame::followPath(Simulation& simulation, const Scene& scene) {
     constexpr size_t most = 20000;  // pieces; then every second place is forgotten
     const int id = scene.view.pathOf;
     if (std::exchange(pathOf_, id) != id) path_.clear();
-    if (id < 0 || id >= simulation.fluidCount()) return;
+    if (id < 0) return;
     const double now = simulation.clock().time;
     std::erase_if(path_, [&](const Place& p) { return p.time >= now; });  // the run went back
-    path_.push_back({now, toFloat(simulation.particle(id).position) - scene.domain.min});
+    const std::optional<Particle> particle = simulation.find(id);
+    if (!particle) return;  // it has not come yet, or has left, and its path ends there
+    path_.push_back({now, toFloat(particle->position) - scene.domain.min});
     if (path_.size() < most) return;
     for (size_t i = 0; i < path_.size() / 2; ++i) path_[i] = path_[2 * i + 1];
     path_.resize(path_.size() / 2);
@@ -266,6 +271,14 @@ float contourStep(const View& view, float min, float max, bool logarithmic) {
     return std::log(10.0f) * (each >= 1 ? 1 / std::round(each) : std::ceil(decades / float(count)));
 }
 
+// What has gone out on one side has come in on the other.
+bool goesAround(const Domain& domain, Vec3 step) {
+    for (int k = 0; k < 3; ++k)
+        if (domain.periodic(k) && std::abs(step[k]) > 0.5f * (domain.max - domain.min)[k])
+            return true;
+    return false;
+}
+
 }  // namespace
 
 void Frame::setInside(DrawSettings& settings, const Scene& scene) {
@@ -279,9 +292,8 @@ void Frame::setInside(DrawSettings& settings, const Scene& scene) {
     settings.fluid = !slice_ || view.slice.fluid;
     settings.contourStep =
         contourStep(view, settings.rangeMin, settings.rangeMax, settings.logarithmic);
-    // What has gone out on one side has come in on the other.
     for (size_t i = 1; i < path_.size(); ++i)
-        if (length(path_[i].at - path_[i - 1].at) < 0.4f * length(domainSize(scene)))
+        if (!goesAround(scene.domain, path_[i].at - path_[i - 1].at))
             settings.path.push_back({path_[i - 1].at, path_[i].at});
     for (const CellVelocity& c : arrows_) {
         const float scale = view.arrows.length * arrowStep(scene) / std::max(arrowSpeed_, 1e-9f);

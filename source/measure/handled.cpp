@@ -150,8 +150,10 @@ std::string HandlingJudge::leak(Simulation& simulation, const std::vector<Partic
 std::string HandlingJudge::look(Simulation& simulation, double hand) {
     const Measurement m = simulation.measure();
     if (!m.finite) return "values that are no numbers";
-    if (simulation.fluidCount() != count_)
-        return fmt::format("{} particles of {} are left", simulation.fluidCount(), count_);
+    const int expected =
+        count_ + int(std::lround((m.massIn - m.massOut) / double(particleMass(scene_))));
+    if (simulation.fluidCount() != expected)
+        return fmt::format("{} particles of {} are left", simulation.fluidCount(), expected);
     const double size = diagonalOf(scene_), dragged = 0.1 * m.soundSpeed;
     double start = 0;
     for (const Body& body : scene_.fluid.bodies)

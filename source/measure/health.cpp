@@ -225,7 +225,9 @@ void HealthGuard::blame(const Measurement& m) {
         if (!good.ids.empty())
             index =
                 size_t(std::lower_bound(good.ids.begin(), good.ids.end(), p.id) - good.ids.begin());
-        if (index < good.positions.size())  // it may have come since
+        const bool hasCome =
+            good.ids.empty() || (index < good.ids.size() && good.ids[index] == p.id);
+        if (hasCome && index < good.positions.size())
             p.position = toDouble(good.positions[index]) + toDouble(scene_.domain.min);
     }
 }

@@ -34,10 +34,10 @@ PointField vectorField(const char* name, const char* unit, size_t n, const Of& o
 PointField numberField(const char* name, std::vector<int32_t> numbers) {
     return {name, "", 1, std::move(numbers)};
 }
-std::vector<int32_t> firstNumbers(size_t n) {
-    std::vector<int32_t> numbers(n);
-    for (size_t i = 0; i < n; ++i) numbers[i] = int32_t(i);
-    return numbers;
+std::vector<int32_t> idsOf(const std::vector<Particle>& particles) {
+    std::vector<int32_t> ids;
+    for (const Particle& p : particles) ids.push_back(p.id);
+    return ids;
 }
 
 bool isSamePose(const SolidPose& a, const SolidPose& b) {
@@ -56,18 +56,18 @@ ParticleSeries::ParticleSeries(const Scene& scene, Simulation& simulation,
       format_(path_),
       corner_(toDouble(scene.domain.min)),
       fields_(fieldsOf(scene.output.fields)),
+      mass_(particleMass(scene)),
       surfaces_(std::move(surfaces)),
       interval_(interval) {
     requireOwnFolder(scene);
     requireFolder(folder_);
-    const std::vector<uint16_t> bodies = simulation.state().particles.bodies;
-    fluids_.assign(bodies.begin(), bodies.end());
-    fluids_.resize(size_t(simulation.fluidCount()), 0);
-    const float mass = particleMass(scene);
-    masses_.assign(fluids_.size(), mass);
-    for (size_t i = 0; i < bodies.size(); ++i)
-        masses_[i] =
-            mass * restDensity(scene, scene.fluid.bodies[bodies[i]]) / scene.fluid.restDensity;
+    // Where particles come and go there is one fluid.
+    if (!comesAndGoes(scene))
+        for (const uint16_t body : simulation.state().particles.bodies) {
+            fluids_.push_back(body);
+            masses_.push_back(mass_ * restDensity(scene, scene.fluid.bodies[body]) /
+                              scene.fluid.restDensity);
+        }
     if (!scene.objects.empty()) objects_ = sampleObjects(scene).objects;
     if (now.steps == 0)
         removeOlder();
@@ -118,7 +118,7 @@ std::string ParticleSeries::fileOf(const std::string& piece, size_t number) cons
 
 Piece ParticleSeries::fluidOf(const std::vector<Particle>& particles) const {
     const size_t n = particles.size();
-    Piece fluid{"fluid", {}, {numberField("id", firstNumbers(n))}, {}};
+    Piece fluid{"fluid", {}, {numberField("id", idsOf(particles))}, {}};
     for (const Particle& p : particles) fluid.points.push_back(p.position);
     for (const std::string& name : fields_) {
         const auto& p = particles;
@@ -131,8 +131,10 @@ Piece ParticleSeries::fluidOf(const std::vector<Particle>& particles) const {
                 ? field("density", "kg/m³", n, [&](size_t i) { return p[i].density; })
             : name == "pressure"
                 ? field("pressure", "Pa", n, [&](size_t i) { return p[i].pressure; })
-            : name == "mass" ? field("mass", "kg", n, [&](size_t i) { return masses_[i]; })
-                             : numberField("fluid", fluids_));
+            : name == "mass"
+                ? field("mass", "kg", n,
+                        [&](size_t i) { return masses_.empty() ? mass_ : masses_[i]; })
+                : numberField("fluid", fluids_.empty() ? std::vector<int32_t>(n) : fluids_));
     }
     return fluid;
 }

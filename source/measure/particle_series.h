@@ -52,8 +52,9 @@ private:
     MomentFormat format_;
     Vec3d corner_;  // of the domain, world coordinates
     std::vector<std::string> fields_;
-    std::vector<float> masses_;     // kg, by id; in two dimensions kg/m
-    std::vector<int32_t> fluids_;   // entries of fluid.bodies, by id; empty: one for all
+    float mass_;                    // kg, of a particle of the one fluid; in 2D kg/m
+    std::vector<float> masses_;     // likewise, by id; empty: all have that one
+    std::vector<int32_t> fluids_;   // entries of fluid.bodies, by id; empty: 0 for all
     std::vector<int32_t> objects_;  // of each object's particle, in their order
     std::vector<SolidSurface> surfaces_;
     std::vector<SolidPose> posed_;  // as last written,

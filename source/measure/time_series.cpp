@@ -64,6 +64,7 @@ constexpr Quantity SolveQuantities[] = {
 constexpr Quantity SourceQuantities[] = {
     {"mass_in", "kg", [](const Measurement& m) { return m.massIn; }, true},
     {"mass_out", "kg", [](const Measurement& m) { return m.massOut; }, true},
+    {"mass_missed", "kg", [](const Measurement& m) { return m.massMissed; }, true},
 };
 
 struct SolidQuantity {

@@ -68,10 +68,9 @@ void addMouths(const Scene& scene, std::vector<std::string>& out) {
         const SourceLattice lattice = latticeOf(scene, scene.sources[i]);
         const Vec3d behind =
             toDouble(scene.sources[i].center) - (lattice.depth() + dx) * lattice.normal;
-        const auto holds = [&](const Form& form) {
+        const auto holds = [&](const auto& form) {  // a body or a solid, which may be turned
             if (form.shape == Shape::File) return false;
-            const Convex shape = convexOf(form, dimensions);
-            return shape.nearest(behind - shape.middle).distance < 0;
+            return convexOf(form, dimensions).nearestInSpace(behind).distance < 0;
         };
         const auto any = [&](const auto& forms) {
             return std::any_of(forms.begin(), forms.end(), holds);

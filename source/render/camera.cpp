@@ -72,7 +72,8 @@ void OrbitCamera::orbit(float degreesRight, float degreesUp) {
 void OrbitCamera::lookFrom(Vec3 direction) {
     const Vec3 d = upright(direction);
     pitch = std::asin(std::clamp(d.y, -1.0f, 1.0f)) / degree;
-    if (std::abs(d.y) < 0.999f) yaw = std::atan2(d.x, d.z) / degree;
+    // A plan's edges are upright and level.
+    yaw = std::abs(d.y) < 0.999f ? std::atan2(d.x, d.z) / degree : 90 * std::round(yaw / 90);
 }
 
 void OrbitCamera::pan(float dx, float dy, float height) {

@@ -54,10 +54,10 @@ namespace {
 // Choices of marks, those with most of them first.
 std::vector<std::vector<double>> choicesOf(double min, double max, bool logarithmic) {
     std::vector<std::vector<double>> choices;
-    if (logarithmic && max > min) choices.push_back(logarithmicTicks(min, max, true, 1));
+    if (logarithmic) choices.push_back(logarithmicTicks(min, max, true, 1));
     for (int k = 1; k <= 5; ++k)
-        choices.push_back(logarithmic && max > min ? logarithmicTicks(min, max, false, k)
-                                                   : ticks(min, max, 6 - k));
+        choices.push_back(logarithmic ? logarithmicTicks(min, max, false, k)
+                                      : ticks(min, max, 6 - k));
     return choices;
 }
 
@@ -67,8 +67,11 @@ std::vector<Mark> fittingMarks(double min, double max, bool logarithmic, float b
                                const std::function<float(std::string_view)>& widthOf) {
     std::vector<Mark> marks;
     const auto scaled = [&](double value) { return logarithmic ? std::log(value) : value; };
-    for (const std::vector<double>& values : choicesOf(min, max, logarithmic)) {
-        const double step = values.size() > 1 && !logarithmic ? values[1] - values[0] : 0;
+    // Where fewer than two of 1, 2 and 5 times a power of ten are in the range it has even marks.
+    const bool byPowers =
+        logarithmic && max > min && logarithmicTicks(min, max, true, 1).size() > 1;
+    for (const std::vector<double>& values : choicesOf(min, max, byPowers)) {
+        const double step = values.size() > 1 && !byPowers ? values[1] - values[0] : 0;
         marks.clear();
         bool fits = true;
         float end = -1e9f;  // of the label before

@@ -81,6 +81,9 @@ void Lines::addArrow(const Arrow& arrow) {
             add(from, arrow.to, width * thick_, color);
 }
 
+void Lines::addRim(Vec3 from, Vec3 to) {
+    add(from, to, 3.6f * thick_, {0.05f, 0.06f, 0.08f, 0.9f});
+}
 void Lines::addMark(Vec3 from, Vec3 to) { add(from, to, 2 * thick_, {1.0f, 0.80f, 0.30f, 1}); }
 
 void Lines::addRing(const Ring& ring) {

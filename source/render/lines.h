@@ -37,7 +37,8 @@ public:
     void addEdge(Vec3 from, Vec3 to, std::array<float, 4> color);
     void addEdge(Vec3 from, Vec3 to, std::array<float, 4> color, Vec3 low, Vec3 high);
     void addArrow(const Arrow&);
-    // A piece of a path or of a ruler.
+    // A piece of a path or of a ruler, and what is to be behind it on a light background.
+    void addRim(Vec3 from, Vec3 to);
     void addMark(Vec3 from, Vec3 to);
     void addRing(const Ring&);
     // Which way x, y and z are, at the lower right. Returns where their names stand, px from the

@@ -265,6 +265,8 @@ void Renderer::drawLines(const DrawSettings& s) {
     }
     const int hidden = lines.count();
     for (const Arrow& arrow : s.arrows) lines.addArrow(arrow);
+    if (s.theme == Theme::Light)
+        for (const auto& [from, to] : s.path) lines.addRim(from, to);
     for (const auto& [from, to] : s.path) lines.addMark(from, to);
     for (const Ring& ring : s.rings) lines.addRing(ring);
     if (s.axes) axisNames_ = lines.addAxes();

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <string>
 
@@ -11,9 +12,10 @@ void VertexBuffer::resize(int count) {
     CHECK(count >= 0 && !mapped());
     count_ = count;
     if (count <= capacity_) return;
-    capacity_ = count;
+    // While particles come it must not be made, and lent, anew at every picture.
+    capacity_ = std::max(count, capacity_ + capacity_ / 2);
     loan_.end();
-    glNamedBufferData(buffer_, GLsizeiptr(sizeof(Vertex)) * count, nullptr, GL_STREAM_DRAW);
+    glNamedBufferData(buffer_, GLsizeiptr(sizeof(Vertex)) * capacity_, nullptr, GL_STREAM_DRAW);
     if (glGetError() == GL_OUT_OF_MEMORY)
         throw Error(Failure::Memory, "no graphics memory for " + std::to_string(count) +
                                          " particles: raise simulation.spacing");

@@ -73,11 +73,14 @@ std::vector<double> wallPlanes(const Scene& scene, int axis) {
     }
     const std::vector<WallCells> cells = wallCells(scene, axis);
     const int64_t layers = wallLayers(scene, axis);
-    for (size_t i = 0; i < cells.size(); ++i) {
-        const int64_t below = i == 0 ? layers : 0, above = i + 1 == cells.size() ? layers : 0;
-        add(cells[i].low + (0.5 - double(below)) * cells[i].step, below + cells[i].count + above,
-            cells[i].step);
+    const double outside = wallStep(scene)[axis];
+    if (cells.size() == 1 && cells[0].low == 0) {
+        add((0.5 - double(layers)) * cells[0].step, cells[0].count + 2 * layers, cells[0].step);
+        return at;
     }
+    add((0.5 - double(layers)) * outside, layers, outside);
+    for (const WallCells& some : cells) add(some.low + 0.5 * some.step, some.count, some.step);
+    add(size + 0.5 * outside, layers, outside);
     return at;
 }
 

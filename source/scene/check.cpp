@@ -373,7 +373,7 @@ void checkScene(const Scene& scene, const std::string& place, std::optional<Part
         checkSolids(scene);
         checkObjects(scene);
         for (size_t p = 0; p < scene.output.probes.size(); ++p) checkProbe(scene, p);
-        checkView(scene);
+        if (!begun) checkView(scene);
         checkOutput(scene);
         checkCounts(scene, {mostFluid(scene, count.fluid), count.walls});
         if (!begun) checkParticleFiles(scene);

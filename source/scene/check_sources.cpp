@@ -7,7 +7,9 @@
 #include "scene/sources.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <unordered_map>
 
 namespace spindrift {
 namespace {
@@ -30,6 +32,27 @@ void checkRest(const Scene& scene) {
         refuse(list, "don't go with elastic objects; leave one of them out");
 }
 
+// Before any lattice is made of it.
+void checkSize(const Scene& scene, const Source& source, const std::string& path) {
+    constexpr double MostPoints = 1e6;
+    const bool flat = scene.simulation.dimensions == 2, round = source.mouth == Mouth::Disc;
+    const double dx = scene.simulation.spacing, width = round ? 2.0 * source.radius : source.width,
+                 height = flat    ? dx
+                          : round ? width
+                                  : source.height;
+    Vec3d size = scene.domain.size();
+    if (flat) size.z = 0;
+    if (std::max(width, height) > length(size))
+        refuse(path, fmt::format("its mouth of {:.4g} m is longer than the domain's diagonal, "
+                                 "{:.4g} m; make it smaller",
+                                 std::max(width, height), length(size)));
+    const double points = width / dx * (height / dx);
+    if (points > MostPoints)
+        refuse(path, fmt::format("its mouth has about {:.3g} points, and {:.0g} are the most; make "
+                                 "it smaller or raise simulation.spacing",
+                                 points, MostPoints));
+}
+
 void checkNumbers(const Scene& scene, const Source& source, const std::string& path) {
     const int given = (source.velocity > 0) + (source.flow > 0) + !source.path.empty();
     if (given == 0) refuse(path, "gives nothing; set velocity, flow or path");
@@ -50,6 +73,7 @@ void checkNumbers(const Scene& scene, const Source& source, const std::string& p
         refuse(path, fmt::format("its mouth of {} m is narrower than simulation.spacing, {} m; "
                                  "widen it or lower the spacing",
                                  extent, scene.simulation.spacing));
+    checkSize(scene, source, path);
     try {
         scheduleOf(scene, source);
     } catch (const Error& error) { refuse(path + ".path", error.what()); }
@@ -59,6 +83,51 @@ void checkNumbers(const Scene& scene, const Source& source, const std::string& p
         refuse("time.step", fmt::format("fluid of {} goes on by more than a spacing in {} s; lower "
                                         "it below {:.2g} s, or set time.mode to cfl",
                                         path, scene.time.step, lattice.apart / fastest));
+}
+
+// Where all that a source holds is, m.
+std::vector<Vec3d> heldOf(const Scene& scene, const Source& source) {
+    const SourceLattice lattice = latticeOf(scene, source);
+    std::vector<Vec3d> out;
+    for (const SourceLattice::Point& p : lattice.points)
+        for (int layer = 0; layer < lattice.layers; ++layer)
+            out.push_back(p.at - (layer + 0.5) * lattice.apart * lattice.normal);
+    return out;
+}
+
+// No two sources hold particles in the same place. Cells are half a spacing long.
+void checkOverlap(const Scene& scene) {
+    if (scene.sources.size() < 2) return;
+    const double near = 0.5 * double(scene.simulation.spacing);
+    const Vec3d low = toDouble(scene.domain.min);
+    struct Held {
+        Vec3d at;
+        size_t source;
+    };
+    using Cell = std::array<int64_t, 3>;
+    const auto cellOf = [&](Vec3d p) {
+        Cell cell;
+        for (int k = 0; k < 3; ++k) cell[size_t(k)] = int64_t(std::floor((p[k] - low[k]) / near));
+        return cell;
+    };
+    const auto keyOf = [](const Cell& c) { return (c[0] * 0x200000 + c[1]) * 0x200000 + c[2]; };
+    std::unordered_multimap<int64_t, Held> held;
+    for (size_t i = 0; i < scene.sources.size(); ++i) {
+        const std::vector<Vec3d> places = heldOf(scene, scene.sources[i]);
+        for (const Vec3d& at : places)
+            for (int n = 0; n < 27; ++n) {
+                Cell cell = cellOf(at);
+                cell[0] += n % 3 - 1, cell[1] += n / 3 % 3 - 1, cell[2] += n / 9 - 1;
+                const auto [begin, end] = held.equal_range(keyOf(cell));
+                for (auto other = begin; other != end; ++other)
+                    if (length(other->second.at - at) < near)
+                        refuse(fmt::format("sources[{}].center", i),
+                               fmt::format("what is about to come is where that of sources[{}] is, "
+                                           "at ({:.4g}, {:.4g}, {:.4g}) m; move them apart",
+                                           other->second.source, at.x, at.y, at.z));
+            }
+        for (const Vec3d& at : places) held.insert({keyOf(cellOf(at)), {at, i}});
+    }
 }
 
 // All that is held lies behind the mouth: in the domain, and not in a solid.
@@ -81,7 +150,7 @@ void checkPlace(const Scene& scene, const Source& source, const std::string& pat
                                        lattice.depth(), "xyz"[k], at[k], low, high));
             }
             for (size_t s = 0; s < solids.size(); ++s)
-                if (solids[s].nearest(at - solids[s].middle).distance < 0.25 * dx)
+                if (solids[s].nearestInSpace(at).distance < 0.25 * dx)
                     refuse(path + ".center",
                            fmt::format("what is about to come takes {:.4g} m behind the mouth, and "
                                        "solids[{}] is there, at ({:.4g}, {:.4g}, {:.4g}) m; leave "
@@ -100,6 +169,7 @@ void checkSources(const Scene& scene) {
         checkNumbers(scene, scene.sources[i], path);
         checkPlace(scene, scene.sources[i], path);
     }
+    checkOverlap(scene);
     for (size_t i = 0; i < scene.sinks.size(); ++i)
         for (int k = 0; k < scene.simulation.dimensions; ++k) {
             const Sink& s = scene.sinks[i];

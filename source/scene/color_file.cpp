@@ -7,7 +7,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <vector>
@@ -46,6 +48,10 @@ Stops fromJson(const std::string& path) {
         const Json& list = root.is_array() && !root.empty() && root[0].is_object() ? root[0] : root;
         if (list.is_object()) {
             const auto numbers = list.at("RGBPoints").get<std::vector<double>>();
+            if (numbers.size() % 4 != 0)
+                fail(path, fmt::format("RGBPoints has {} numbers, not four for each colour; mend "
+                                       "it",
+                                       numbers.size()));
             for (size_t i = 0; i + 3 < numbers.size(); i += 4)
                 stops.push_back({numbers[i], {numbers[i + 1], numbers[i + 2], numbers[i + 3]}});
         } else {
@@ -84,7 +90,10 @@ void mend(Stops& stops, const std::string& path) {
 }  // namespace
 
 std::array<std::array<uint8_t, 3>, 256> readColors(const std::string& path) {
-    Stops stops = path.ends_with(".csv") ? fromTable(path) : fromJson(path);
+    std::string extension = std::filesystem::path(path).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
+    Stops stops = extension == ".csv" ? fromTable(path) : fromJson(path);
     mend(stops, path);
     std::array<std::array<uint8_t, 3>, 256> table{};
     size_t next = 1;

@@ -78,6 +78,9 @@ Convex convexOf(const Solid& solid, int dimensions) {
 Vec3d halfSpan(const Solid& solid) {
     const Convex shape = convexOf(solid, 3);
     const Vec3d half = halfExtent(solid);
+    const bool isRound = solid.shape == Shape::Sphere ||
+                         (solid.shape == Shape::Cylinder && solid.axis == solid.spinAxis);
+    if (isRound) return half;  // turned it is where it was
     Vec3d span;
     for (int k = 0; k < 3; ++k)
         for (int own = 0; own < 3; ++own) span[k] += std::abs(shape.axis[own][k]) * half[own];

@@ -45,6 +45,16 @@ double keptBytes(const Scene& scene) {
     return 2 * Vector + (carriesDensity(scene) ? Scalar : 0);
 }
 
+// What only some scenes keep, in bytes: what each term does to the fluid and what the fluid does to
+// walls, and which point of a mouth holds a particle, with its number.
+double extraBytes(const Scene& scene, double fluid, double walls) {
+    constexpr double Vector = 16, Scalar = 4;
+    const bool balance = scene.output.energyBalance, loads = balance || scene.output.faceForces;
+    return ((balance ? 5 * Vector + 4 * Scalar : 0) + (comesAndGoes(scene) ? 2 * Scalar : 0)) *
+               fluid +
+           ((balance ? 2 * Vector : 0) + (loads ? 4 * Vector : 0)) * walls;
+}
+
 }  // namespace
 
 int64_t estimateMemory(const Scene& scene, ParticleCount count) {
@@ -53,8 +63,8 @@ int64_t estimateMemory(const Scene& scene, ParticleCount count) {
     // A GPU's run keeps nothing here, but passes through.
     if (scene.compute.backend == Backend::Cuda)
         return int64_t(HostBytesPerGpuParticle * particles + objects);
-    const double bytes =
-        BytesPerParticle * particles + BytesPerCell * mostCells(scene, particles) + objects;
+    const double bytes = BytesPerParticle * particles + BytesPerCell * mostCells(scene, particles) +
+                         objects + extraBytes(scene, double(count.fluid), double(count.walls));
     return int64_t(std::min(bytes, 9e18));
 }
 
@@ -69,6 +79,7 @@ int64_t estimateGpuMemory(const Scene& scene, ParticleCount count) {
     const double bytes = (GpuBytesPerParticle + more + keptBytes(scene)) * fluid +
                          (GpuBytesPerWall + (local ? GpuBytesPerLocalWall : 0)) * walls +
                          GpuBytesPerCell * mostCells(scene, fluid + walls) +
+                         extraBytes(scene, fluid, walls) +
                          GpuBytesPerObjectParticle * countObjectParticles(scene) + GpuBytesAnyway;
     return int64_t(std::min(bytes, 9e18));
 }

@@ -5,6 +5,7 @@
 #include "scene/lattice.h"
 #include "scene/particles.h"
 #include "scene/sample_solid.h"
+#include "scene/sources.h"
 
 #include <algorithm>
 #include <cmath>
@@ -306,6 +307,10 @@ void relaxFrom(const Scene& scene, size_t first, std::vector<Vec3>& places) {
 void relaxPlaces(const Scene& scene, const std::vector<Lattice>& lattices, bool isCut,
                  std::vector<Place>& places) {
     Region region = regionOf(scene, fittedBodies(scene, lattices));
+    if (!scene.sources.empty())
+        region.inside = [mouths = MouthRoom(scene), whole = region.inside](Vec3d p, double width) {
+            return mouths.takes(p) ? 0 : whole(p, width);
+        };
     if (!factsOf(scene).isHistorical) addBoundary(scene, region);
     // Sharp edges have no boundary particles in their tips that would keep others out.
     region.out = [&scene, solids = solidsOf(scene)](Vec3d p) { return outOf(scene, solids, p); };

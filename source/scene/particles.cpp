@@ -89,6 +89,30 @@ void placeFile(const Scene& scene, size_t index, Placement& out) {
     for (double rho : table.densities) out.densities.push_back(float(rho));
 }
 
+// None but what is held begins before a mouth, wherever it has come there from: moved by relaxing
+// or read from a file.
+void clearMouths(const Scene& scene, Placement& out) {
+    if (scene.sources.empty()) return;
+    const MouthRoom mouths(scene);
+    size_t kept = 0;
+    const bool hasDensities = !out.densities.empty();
+    if (hasDensities) out.densities.resize(out.positions.size());
+    for (size_t i = 0; i < out.positions.size(); ++i) {
+        if (mouths.takes(toDouble(out.positions[i]))) continue;
+        out.positions[kept] = out.positions[i];
+        out.velocities[kept] = out.velocities[i];
+        out.pressures[kept] = out.pressures[i];
+        out.bodies[kept] = out.bodies[i];
+        if (hasDensities) out.densities[kept] = out.densities[i];
+        ++kept;
+    }
+    out.positions.resize(kept);
+    out.velocities.resize(kept);
+    out.pressures.resize(kept);
+    out.bodies.resize(kept);
+    if (hasDensities) out.densities.resize(kept);
+}
+
 }  // namespace
 
 float supportRadius(const Scene& scene) {
@@ -219,6 +243,7 @@ Placement placeParticles(const Scene& scene) {
     for (size_t b = 0; b < scene.fluid.bodies.size(); ++b) {
         if (scene.fluid.bodies[b].shape == Shape::File) placeFile(scene, b, out);
     }
+    clearMouths(scene, out);
     fillMouths(scene, out);
     if (!isMultiFluid(scene)) out.bodies = {};
     if (!out.densities.empty()) out.densities.resize(out.positions.size());
@@ -244,6 +269,7 @@ std::vector<double> bodyVolumes(const Scene& scene) {
     const double dx = scene.simulation.spacing, most = 3e5;
     const std::optional<ObjectRoom> objects =
         scene.objects.empty() ? std::nullopt : std::optional<ObjectRoom>(scene);
+    const MouthRoom mouths(scene);
     std::vector<double> volumes;
     std::vector<Convex> earlier;
     for (const Body& body : scene.fluid.bodies) {
@@ -253,7 +279,7 @@ std::vector<double> bodyVolumes(const Scene& scene) {
         }
         Region region = regionOf(scene, {body});
         region.inside = [&, alone = region.inside](Vec3d p, double width) {
-            double share = objects && objects->takes(p) ? 0 : alone(p, width);
+            double share = (objects && objects->takes(p)) || mouths.takes(p) ? 0 : alone(p, width);
             for (const Convex& e : earlier)
                 share =
                     std::min(share, std::clamp(0.5 + distanceFrom(scene, e, p) / width, 0.0, 1.0));
@@ -297,7 +323,8 @@ double soundSpeed(const Scene& s, const FluidExtent& fluid) {
         for (int k = 0; k < 3; ++k)
             low[k] = std::min(low[k], at[k]), high[k] = std::max(high[k], at[k]);
     }
-    double fall = 0;  // m^2/s^2
+    if (!s.sources.empty()) low = {0, 0, 0}, high = size;  // fluid may fill it all
+    double fall = 0;                                       // m^2/s^2
     for (int k = 0; k < 3; ++k)
         fall += s.domain.periodic(k) ? std::abs(g[k]) * size[k]
                 : g[k] > 0           ? g[k] * (size[k] - low[k])

@@ -689,10 +689,6 @@ template <class V, class Visitor> void visitInside(V& v, Visitor&& visit) {
                "a grid, in the slice's plane where there is one; 0 = none"});
     visit("view.arrows.length", v.arrows.length,
           Knob{"", 0.1f, 10, "of the longest arrow / the grid's step"});
-    visit("view.path_of", v.pathOf,
-          Knob{"", -1, 1e9f,
-               "number of a fluid particle whose path is drawn, as of the first picture with it; "
-               "-1 = none. A double click sets it to the one that is picked"});
 }
 
 template <class S, class Visitor> void visitPicture(S& s, Visitor&& visit) {
@@ -719,6 +715,10 @@ template <class S, class Visitor> void visitPicture(S& s, Visitor&& visit) {
     visit("view.speed", v.speed,
           Knob{"x real time", 0.01f, 10,
                "how fast the window plays: simulated seconds for one of the clock's"});
+    visit("view.path_of", v.pathOf,
+          Knob{"", -1, 1e9f,
+               "number of a fluid particle whose path is drawn, as of the first picture with it; "
+               "-1 = none. A double click sets it to the one that is picked"});
 
     visitInside(v, visit);
 
@@ -797,8 +797,8 @@ template <class S, class Visitor> void visitOutput(S& s, Visitor&& visit) {
     visit("output.energy_balance", o.energyBalance,
           Knob{"", 0, 0,
                "columns of the series: work done on the fluid, what each term has dissipated, "
-               "energy of compression, and what is left that nothing explains; a step takes two to "
-               "three times as long",
+               "energy of compression, and what is left that nothing explains; a step takes "
+               "2.7 to 3.4 times as long (incompressible 1.2)",
                Restart});
     visit("output.strict", o.strict,
           Knob{"", 0, 0, "results outside the validity of the method are an error, not a remark",

@@ -173,7 +173,7 @@ std::vector<SourceKey> scheduleOf(const Scene& scene, const Source& source) {
     for (size_t i = 0; i < times.size(); ++i) {
         const bool last = i + 1 == times.size();
         const double next = last ? end : times[i + 1], speed = speedAt(times[i]),
-                     slope = last ? 0 : (speedAt(next) - speed) / (next - times[i]);
+                     slope = (speedAt(next) - speed) / (next - times[i]);
         keys.push_back({times[i], way, speed, slope});
         way += (speed + slope * (next - times[i]) / 2) * (next - times[i]);
     }

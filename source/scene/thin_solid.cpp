@@ -74,7 +74,7 @@ private:
         if (axis == 2 && scene_.simulation.dimensions == 2) return {1, 0, dx_};
         const int count = std::max(1, int(std::round(2 * half[axis] / dx_)));
         // One that spans a periodic axis goes on as itself.
-        const bool spans = scene_.domain.periodic(axis) &&
+        const bool spans = scene_.domain.periodic(axis) && solid_.turn == 0 &&
                            2 * half[axis] > scene_.domain.size()[axis] - 0.25 * dx_;
         return {count, spans ? 0 : layers_, 2 * half[axis] / count};
     }
@@ -141,7 +141,7 @@ private:
         const double near = 0.25 * dx_;
         const Vec3d low = toDouble(scene_.domain.min) - shape_.middle,
                     high = toDouble(scene_.domain.max) - shape_.middle;
-        for (int k = 0; k < shape_.planes; ++k)
+        for (int k = 0; k < shape_.planes && solid_.turn == 0; ++k)
             for (int axis = 0; axis < scene_.simulation.dimensions; ++axis) {
                 const double along = shape_.normal[k][axis], end = along * shape_.offset[k];
                 if (std::abs(along) < 0.99 || scene_.domain.periodic(axis)) continue;

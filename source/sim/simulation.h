@@ -165,9 +165,10 @@ public:
     // What it comes to, which takes a look at all particles; and the time alone.
     virtual Measurement measure() = 0;
     virtual StepState clock() = 0;
-    // All fluid particles, in the order of their ids; one of them by its id, Error (Usage) where
-    // there is none.
+    // All fluid particles, in the order of their ids; one of them by its id, nothing where there
+    // is none; the same, Error (Usage) where there is none.
     virtual std::vector<Particle> particles() = 0;
+    virtual std::optional<Particle> find(int id) = 0;
     virtual Particle particle(int id) = 0;
     // Where each of the scene's solids is now.
     virtual std::vector<SolidPose> solidPoses() = 0;

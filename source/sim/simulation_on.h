@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -112,7 +113,7 @@ public:
     }
     Measurement measure() override {
         Measurement m = measureFluid(flow_, fluidCount());
-        countSteps(m, clock(), blocks_.areOn(), flow_.fluidCount);
+        countSteps(m, clock(), blocks_.areOn(), fluidCount());
         countComers(m, flow_.scene, sources_.tally());
         m.solvesPressure = factsOf(flow_.scene).solvesPressure;
         if (m.solvesPressure) m.solve = solver_.report();
@@ -140,8 +141,13 @@ public:
     std::vector<Particle> particles() override {
         return flow_.fluid.download(flow_.scene.domain.min);
     }
-    Particle particle(int id) override {
+    std::optional<Particle> find(int id) override {
         return flow_.fluid.downloadOne(id, flow_.scene.domain.min);
+    }
+    Particle particle(int id) override {
+        const std::optional<Particle> found = find(id);
+        require(found.has_value(), "particle: the run has none of that number");
+        return *found;
     }
 
     // --- what it costs ---

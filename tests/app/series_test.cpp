@@ -210,6 +210,27 @@ TEST_F(Series, HasTheFieldsThatWereChosen) {
     EXPECT_NE(masses[0].front(), masses[1].front());
 }
 
+// Where particles come and go: by their own numbers, which are never used again, each with the mass
+// of the one fluid.
+TEST_F(Series, HasTheNumbersOfParticlesThatComeAndGo) {
+    const Outcome outcome = call(
+        "test/tap_small --headless --backend cpu --quiet --time 0.3 --fps 10 --series run.pvd "
+        "--set output.fields='mass, fluid, velocity'");
+    ASSERT_EQ(outcome.code, 0) << outcome.text;
+    const ReadPiece first = readVtp(folder_ / "run" / "fluid_00000.vtp"),
+                    last = readVtp(folder_ / "run" / "fluid_00003.vtp");
+    const std::vector<double>& ids = last.fields.at("id");
+    ASSERT_EQ(ids.size(), last.points.size() / 3);
+    EXPECT_GT(ids.back(), double(ids.size() - 1)) << "some have left";
+    EXPECT_GE(ids.back(), double(first.fields.at("id").size())) << "some have come";
+    for (size_t i = 1; i < ids.size(); ++i) ASSERT_GT(ids[i], ids[i - 1]);
+    ASSERT_EQ(last.fields.at("mass").size(), ids.size());
+    for (const double mass : last.fields.at("mass"))
+        ASSERT_EQ(mass, first.fields.at("mass").front());
+    ASSERT_EQ(last.fields.at("fluid").size(), ids.size());
+    for (const double fluid : last.fields.at("fluid")) ASSERT_EQ(fluid, 0);
+}
+
 TEST_F(Series, WritesSolidsThatStayOnce) {
     ASSERT_EQ(call("bowl --headless --backend cpu --quiet --set simulation.spacing=0.05 --time "
                    "0.03 --fps 100 --series run.pvd")

@@ -132,7 +132,7 @@ struct Scatter {
 double energyOf(const Measurement& m) { return m.kineticEnergy + m.potentialEnergy; }
 Scatter scatterOf(const Scene& scene, const Measurement& m) {
     Scatter scatter;
-    for (float nudge : {1e-6f, -1e-6f, 2e-6f, -2e-6f}) {
+    for (float nudge : {5e-7f, -5e-7f, 1e-6f, -1e-6f, 2e-6f, -2e-6f, 4e-6f, -4e-6f}) {
         Placement nudged = placeParticles(scene);
         for (Vec3& x : nudged.positions) x = (1 + nudge) * x;
         for (Vec3& u : nudged.velocities) u = (1 + nudge) * u;

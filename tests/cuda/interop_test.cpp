@@ -65,6 +65,7 @@ public:
     StepState clock() override { return s_.clock(); }
     Measurement measure() override { return s_.measure(); }
     std::vector<Particle> particles() override { return s_.particles(); }
+    std::optional<Particle> find(int id) override { return s_.find(id); }
     Particle particle(int id) override { return s_.particle(id); }
     RunState state() override { return s_.state(); }
     void restart(const RunState& state) override { s_.restart(state); }

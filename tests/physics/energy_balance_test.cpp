@@ -94,10 +94,12 @@ TEST(EnergyBalance, ADiscThatTurnsAsASolidKeepsAllIt) {
 TEST(EnergyBalance, OfADamThatBreaksCloses) {
     for (const char* formulation : {"wcsph", "delta_sph", "delta_plus"}) {
         SCOPED_TRACE(formulation);
-        // Of second order where density is summed up, and where it is carried.
+        // Of second order where density is summed up, and where it is carried; by steps of half the
+        // usual length (with that 0.53 % are missing for a moment).
         const std::string integrator =
             formulation == std::string("wcsph") ? "velocity_verlet" : "predictor_corrector";
-        auto simulation = makeSimulation(dam(formulation, {"time.integrator=" + integrator}));
+        auto simulation =
+            makeSimulation(dam(formulation, {"time.integrator=" + integrator, "time.cfl=0.2"}));
         const double start = simulation->measure().potentialEnergy;
         double worst = 0;
         for (int k = 1; k <= 12; ++k) {

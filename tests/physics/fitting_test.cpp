@@ -173,6 +173,27 @@ TEST(Fitting, FloorsMeetTheFacesOfWhatStandsOnThem) {
         }
 }
 
+// And the walls' layers lie outside of the domain, wherever a block stands at their end.
+TEST(Fitting, WallsStayOutsideBesideWhatStandsAtTheirEnds) {
+    for (const double thick : {0.3, 0.75, 1.5, 2.25, 5.0})
+        for (const double away : {0.0, 0.3, 3.1}) {
+            SCOPED_TRACE(testing::Message() << thick << " thick, " << away << " from the wall");
+            Scene scene = poolOf(2, 20, 20, 1, {});
+            scene.solids.resize(1);
+            static_cast<Form&>(scene.solids[0]) = block(away, 0, away + thick, 8);
+            const Placement placed = placeParticles(scene);
+            double nearest = 1e30;
+            for (size_t i = size_t(placed.solidSizes[0]); i < placed.walls.size(); ++i) {
+                const Vec3 p = placed.walls[i];
+                const bool isSide = p.y > 10 * Spacing && p.y < 12 * Spacing;
+                if (!isSide || p.x > 10 * Spacing) continue;
+                EXPECT_LT(p.x, 0);
+                nearest = std::min(nearest, -double(p.x) / double(Spacing));
+            }
+            EXPECT_NEAR(nearest, 0.5, 0.03);
+        }
+}
+
 // Up to a solid's face, also where the body goes on into the solid.
 TEST(Fitting, PoolsBesideASolidAreStill) {
     for (const std::string formulation : {"wcsph", "delta_sph"})

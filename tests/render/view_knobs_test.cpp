@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -130,6 +131,46 @@ TEST(Path, GrowsWithTheRunAndIsForgottenWithIt) {
     run.picture(path);
     run.frame.restart();
     EXPECT_EQ(amber(run.picture(path)), 0);
+}
+
+Scene tap() {
+    return with(collapse(),
+                {"simulation.formulation=delta_sph", "simulation.dimensions=2",
+                 "simulation.spacing=0.02", "domain.max=[0.6,0.5,0.1]",
+                 R"(sources=[{"center":[0.2,0.4,0],"normal":[0,-1,0],"width":0.08,"velocity":1}])",
+                 R"(sinks=[{"min":[0.5,-0.1,0],"max":[0.7,0.03,0]}])",
+                 R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.6,0.1,0.1]}])",
+                 "view.color_map=viridis", "view.color_by=plain"});
+}
+
+// One that came later has numbers beyond how many there are.
+TEST(Path, IsDrawnOfAParticleThatCame) {
+    Watched run(tap());
+    while (run.simulation->clock().time < 0.2) run.simulation->step();
+    const int id = run.simulation->particles().back().id;
+    ASSERT_GE(id, run.simulation->fluidCount());
+    const Scene path = with(tap(), {"view.path_of=" + std::to_string(id)});
+    for (int i = 0; i < 20; ++i) run.simulation->step(5), run.frame.update(*run.simulation, path);
+    ASSERT_TRUE(run.simulation->find(id));
+    EXPECT_GT(amber(run.picture(path)), 3);
+}
+
+TEST(Path, EndsWhereItsParticleLeaves) {
+    Watched run(tap());
+    int id = -1;
+    double least = 1;  // m, from the drain
+    for (const Particle& p : run.simulation->particles())
+        if (const double far = std::hypot(p.position.x - 0.5, p.position.y - 0.03);
+            p.position.x < 0.5 && p.position.y > 0.03 && far < least)
+            least = far, id = p.id;
+    const Scene path = with(tap(), {"view.path_of=" + std::to_string(id)});
+    while (run.simulation->find(id) && run.simulation->clock().time < 2)
+        run.simulation->step(5), run.frame.update(*run.simulation, path);
+    ASSERT_FALSE(run.simulation->find(id)) << "it has not left";
+    const int length = amber(run.picture(path));
+    EXPECT_GT(length, 3);
+    run.simulation->step(100);
+    EXPECT_EQ(amber(run.picture(path)), length);
 }
 
 }  // namespace

@@ -76,6 +76,8 @@ const char* whyViewIsIdle(const Scene& s, const std::string& path) {
     if (path.starts_with("view.slice.") && path != "view.slice.axis" &&
         v.slice.axis == Across::None)
         return "view.slice.axis is none";
+    if (path == "view.slice.axis" && v.slice.axis != Across::None && v.colorBy == ColorBy::Plain)
+        return "view.color_by is plain, and so is the slice";
     if (path == "view.slice.position" && s.simulation.dimensions == 2)
         return "in two dimensions there is one layer";
     if (path == "view.arrows.length" && v.arrows.count == 0) return "view.arrows.count is 0";

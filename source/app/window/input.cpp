@@ -135,6 +135,8 @@ void changeSlice(Ui& ui) {
 
 // By this share of the domain.
 void moveSlice(Ui& ui, float by) {
+    if (ui.player.scene.view.slice.axis == Across::None)
+        return ui.say("there is no slice to move: C shows one");
     float& position = ui.player.scene.view.slice.position;
     position = std::clamp(position + by, 0.0f, 1.0f);
     ui.stale = ui.rewrite = true;

@@ -42,6 +42,11 @@ bool edit(float& value, const Knob& knob, const std::string& inForce) {
 }
 
 bool edit(int& value, const Knob& knob, const std::string&) {
+    if (knob.max > 1e6f) {  // no slider hits one of so many
+        const bool changed = ImGui::InputInt("", &value);
+        value = std::clamp(value, int(knob.min), int(knob.max));
+        return changed;
+    }
     return ImGui::SliderInt("", &value, int(knob.min), int(knob.max), "%d", scaleOf(knob));
 }
 

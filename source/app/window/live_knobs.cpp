@@ -21,7 +21,7 @@ float nearer(float value, double wanted, double most) {
 bool isOfKind(const std::string& path, KnobKind kind) {
     if (kind == KnobKind::Physics)
         return !path.starts_with("view.") && !path.starts_with("window.");
-    return kind == KnobKind::All || !path.starts_with("view.camera.");
+    return kind == KnobKind::All || !(path.starts_with("view.camera.") || path == "view.path_of");
 }
 
 std::vector<std::string> changedKnobs(const Scene& a, const Scene& b, KnobKind kind) {

@@ -9,7 +9,8 @@ namespace spindrift {
 
 struct FluidExtent;
 
-// All of them; those that the run follows; those but the camera's, which the mouse moves.
+// All of them; those that the run follows; those but the camera's and the
+// particle whose path is drawn, which the mouse chooses.
 enum class KnobKind { All, Physics, ButCamera };
 bool isOfKind(const std::string& path, KnobKind);
 

@@ -3,6 +3,8 @@
 #include "app/scene_choice.h"
 #include "app/window/input.h"
 
+#include "core/error.h"
+#include "scene/check_view.h"
 #include "scene/mass.h"
 
 #include <imgui.h>
@@ -237,6 +239,18 @@ std::string inForce(const Ui& ui, const std::string& path) {
     return "";
 }
 
+// A file of colours may be named letter by letter: the picture says that there is none.
+void putBackIfRefused(Ui& ui, const View& before) {
+    Scene scene = ui.player.scene;
+    if (scene.view.colorMap == ColorMap::File) scene.view.colorMap = ColorMap::Viridis;
+    try {
+        checkView(scene);
+    } catch (const Error& error) {
+        ui.player.scene.view = before;
+        ui.say(error.what(), true);
+    }
+}
+
 void knobs(Ui& ui) {
     Scene& scene = ui.player.scene;
     const auto edited = [&](const char* title, const std::string& group, bool open = false) {
@@ -244,10 +258,12 @@ void knobs(Ui& ui) {
                editKnobs(scene, ui.player.loadedScene(), group,
                          [&](const std::string& path) { return inForce(ui, path); });
     };
-    if (edited("View", "view", true)) ui.stale = ui.rewrite = true;
-    if (edited("Slice: C, [ and ]", "view.slice")) ui.stale = ui.rewrite = true;
-    if (edited("Clip box", "view.clip")) ui.stale = ui.rewrite = true;
-    if (edited("Thresholds", "view.threshold")) ui.stale = true;
+    const View before = scene.view;
+    bool asked = edited("View", "view", true);
+    asked |= edited("Slice: C, [ and ]", "view.slice");
+    asked |= edited("Clip box", "view.clip");
+    asked |= edited("Thresholds", "view.threshold");
+    if (asked) putBackIfRefused(ui, before), ui.stale = ui.rewrite = true;
     if (edited("Arrows: A", "view.arrows")) ui.stale = ui.rewrite = true;
     if (edited("Stirrer: Ctrl + drag", "view.stir")) ui.stale = true;
     if (edited("Camera", "view.camera")) ui.stale = true;

@@ -56,6 +56,7 @@ void Ui::takeLoaded() {
         isSlow = false, slowSince = uiTime();
         if (player.file() != before) {
             knobs = KnobHistory(player.scene);
+            ruler.reset(), measuring = false, bookmarks = {};
             say("loaded " + player.file());
         } else if (const auto changed =
                        changedKnobs(knobsBefore, player.scene, KnobKind::ButCamera);
@@ -281,27 +282,35 @@ std::string csvOf(const History& h) {
     return text;
 }
 
-// The particle in front whose sphere the ray through the mouse meets.
+// The particle in front whose sphere the ray through the mouse meets; where fluid isn't drawn, the
+// one that is nearest to the surface under the mouse.
 void Ui::pick() {
-    const Vec3d corner = toDouble(player.scene.domain.min);
+    const Scene& scene = player.scene;
+    const Vec3d corner = toDouble(scene.domain.min);
+    const ClipBox box = clipBox(scene);
+    const bool unseen = scene.view.slice.axis != Across::None && !scene.view.slice.fluid;
     const std::array<float, 2> at = *pickAt;
     const Ray ray = camera().ray(at[0], at[1], float(area.width), float(area.height));
     const Vec3d origin = toDouble(ray.origin) + corner, direction = toDouble(ray.direction);
-    const double radius = 0.5 * player.scene.simulation.spacing * player.scene.view.particleScale;
-    double nearest = 1e30;
+    const double radius = 0.5 * scene.simulation.spacing * scene.view.particleScale;
+    const std::optional<Vec3> seen = frame.surfaceAt(int(at[0]), int(at[1]));
+    double nearest = unseen ? 2 * double(scene.simulation.spacing) : 1e30;
     pickAt.reset();
     picked.reset();
     pickedSolid = -1;
     for (const Particle& p : player.simulation().particles()) {
+        if (!box.holds(toFloat(p.position - corner)) || (unseen && !seen)) continue;
         const Vec3d to = p.position - origin;
         const double along = dot(to, direction);
-        if (along <= 0 || along >= nearest || dot(to, to) - along * along > radius * radius)
-            continue;
-        nearest = along;
+        const bool isMet = along > 0 && dot(to, to) - along * along <= radius * radius;
+        if (!unseen && !isMet) continue;
+        const double far = unseen ? length(p.position - corner - toDouble(*seen)) : along;
+        if (far >= nearest) continue;
+        nearest = far;
         picked = p;
     }
-    const std::optional<Vec3> seen = frame.surfaceAt(int(at[0]), int(at[1]));
-    const bool inFront = seen && length(toDouble(*seen) + corner - origin) < nearest - 2 * radius;
+    const bool inFront =
+        seen && (unseen || length(toDouble(*seen) + corner - origin) < nearest - 2 * radius);
     if (inFront) pickedSolid = player.simulation().solidAt(toDouble(*seen) + corner);
     if (pickedSolid >= 0) picked.reset();
     player.scene.view.pathOf = picked ? picked->id : -1;
@@ -321,8 +330,7 @@ void Ui::grab() {
 }
 
 void Ui::refreshPicked() {
-    if (picked && picked->id < player.simulation().fluidCount())
-        picked = player.simulation().particle(picked->id);
+    if (picked) picked = player.simulation().find(picked->id);
 }
 
 std::vector<Ring> Ui::rings() const {

@@ -274,6 +274,7 @@ private:
         ui_.rewrite = moved_ = false;
         ui_.stale = true;
         ui_.frame.update(ui_.player.simulation(), ui_.player.scene);
+        ui_.fluidCount = ui_.player.simulation().fluidCount();
         ui_.refreshPicked();
     }
 
@@ -288,7 +289,6 @@ private:
         ui_.frame.restart();
         Simulation& simulation = ui_.player.simulation();
         ui_.noteDevice();
-        ui_.fluidCount = simulation.fluidCount();
         ui_.wallCount = simulation.wallCount();
         SDL_SetWindowTitle(screen_.window, (scene.window.title + " - " + scene.name).c_str());
     }

@@ -14,6 +14,7 @@
 #include <iterator>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -203,12 +204,11 @@ public:
         for (const int slot : slotsInOrder(id)) out.push_back(describe(host, slot, origin));
         return out;
     }
-    // Only the slots around the particle with this id are fetched. Throws Error (Usage) where there
-    // is none.
-    Particle downloadOne(int id, Vec3 origin) const {
+    // Only the slots around the particle with this id are fetched. Nothing where there is none.
+    std::optional<Particle> downloadOne(int id, Vec3 origin) const {
         const int slot =
             device_.template sum<SlotFound>(slots_, FindSlot{id_.data(), id}).number - 1;
-        if (slot < 0) throw Error(Failure::Usage, "particle: the run has none of that number");
+        if (slot < 0) return {};
         const int first = slot / clusterSize * clusterSize;
         auto vectors = [&](VectorField Particles::*field) {
             return copy(now(field), vectorOffset(first, 0), vectorSize(clusterSize));

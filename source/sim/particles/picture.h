@@ -40,6 +40,7 @@ inline Range withoutOutliers(ValueRange range, const std::vector<int>& counts, b
 template <class Value, class Device>
 Range write(Device& device, const Particles& p, VertexPlaces out) {
     const auto range = device.template sum<ValueRange>(p.slots, WriteVertices<Value>{p, out});
+    if (range.high < range.low) return {0, 0};  // there is none
     if (!(range.high > range.low)) return {range.low, range.high};
     const std::vector<int> counts = device.histogram(p.slots, CountValues<Value>{p, range});
     return withoutOutliers(range, counts, std::is_same_v<Value, DensityValue>);

@@ -6,6 +6,8 @@
 #include "sim/run_state.h"
 #include "sim/step/plan.h"
 
+#include <tuple>
+
 namespace spindrift::LANES {
 
 // How much of a step's kick a part gives to what it moves, in halves, and whether it moves it.
@@ -57,5 +59,10 @@ struct Part {
     // After accelerations, those by pressure or shifts were found: what doesn't follow them.
     void holdBack(Plan&, Initial) {}
 };
+
+// Calls f(part) for each.
+template <class Parts, class F> void forEachPart(const Parts& parts, const F& f) {
+    std::apply([&](auto&... part) { (f(part), ...); }, parts);
+}
 
 }  // namespace spindrift::LANES

@@ -31,15 +31,17 @@ public:
         });
     }
     void reserve(int slots) {
-        for (auto* field : {&pressure_, &other_, &seen_, &seenAtRest_, &own_, &artificial_})
+        for (auto* field : {&pressure_, &other_, &seen_, &seenAtRest_})
             field->resize(vectorSize(slots));
-        foot_.resize(slots);
+        for (auto* field : {&own_, &artificial_})
+            if (flow_.scene.output.energyBalance) field->resize(vectorSize(slots));
         gap_.resize(1), around_.resize(1);
     }
     // `bodies`: of those that float. With their feet in the domain's walls, or without.
     void find(const WallsAtHome& home, const RigidBody* bodies, bool withFeet) {
         const View v = flow_.view();
         reserve(v.walls.slots);
+        if (withFeet) foot_.resize(v.walls.slots);
         bearers_ = {home, withFeet ? foot_.data() : nullptr, flow_.asksForWallLoads()};
         if (withFeet)
             flow_.device.forEach(

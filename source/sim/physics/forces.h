@@ -185,7 +185,9 @@ struct StirFluid {
         const Vector<R> drag{v.c.stirVelocity.x, v.c.stirVelocity.y, v.c.stirVelocity.z};
         const Vector<R> d = load(v.fluid.position, i) - center, u = load(v.fluid.velocity, i);
         const R weight = max(R(1) - dot(d, d) * R(1 / (v.c.stirRadius * v.c.stirRadius)), R(0));
-        const R share = weight * R(min(real(1), v.c.stirRate * real(v.state->dt)));
+        R share = weight * R(min(real(1), v.c.stirRate * real(v.state->dt)));
+        if (v.fluid.heldBy.data)  // what a source holds goes as that wants
+            share = select(load(v.fluid.heldBy, i) > R(0), R(0), share);
         const Vector<R> wanted = subtractScaled(drag, R(v.c.stirPull), d);
         store(v.fluid.velocity, i, addScaled(u, share, wanted - u));
     }

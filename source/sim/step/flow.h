@@ -4,6 +4,7 @@
 
 #include "device/buffer.h"
 #include "scene/formulation.h"
+#include "scene/sources.h"
 #include "scene/thin_solid.h"
 #include "sim/physics/integrate.h"
 #include "sim/neighbours/grid.h"
@@ -34,7 +35,7 @@ template <class Device> struct Flow {
           solidSizes(state.particles.solidSizes),
           bodies(state.particles.bodies),
           solidSamples(state.particles.solids),
-          search(device, makeGrid(s, size_t(fluidCount) + size_t(wallCount))) {
+          search(device, makeGrid(s, size_t(mostFluid(s, fluidCount)) + size_t(wallCount))) {
         if (solidSamples.empty())  // the run goes on from a checkpoint
             for (const Solid& solid : scene.solids)
                 solidSamples.push_back(boundaryOf(scene, solid));

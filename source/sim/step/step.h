@@ -15,15 +15,9 @@
 
 #include <algorithm>
 #include <string>
-#include <tuple>
 #include <utility>
 
 namespace spindrift::LANES {
-
-// Calls f(part) for each.
-template <class Parts, class F> void forEachPart(const Parts& parts, const F& f) {
-    std::apply([&](auto&... part) { (f(part), ...); }, parts);
-}
 
 // `Parts`: a tuple of references, in the order in which they act.
 template <class Device, class K, class Parts> class StepMaker {
@@ -89,9 +83,7 @@ private:
         advance<0, Keep | HalfDrift | KickOn>({"predict", "", "predict"});
         evaluateForces(Initial::No);
         weigh(Moment::BeforeKick);
-        plan_.add(
-            "extremes", [&flow = flow_] { boundCorrection(flow); }, Initial::No,
-            keepsLists ? "" : noLists);
+        bound([](auto& flow) { boundCorrection(flow); });
         move({2, true});
         advance<Resume | HalfKick, Resume | Drift | KickOn>({"correct", "second kick", "correct"});
         end();
@@ -109,9 +101,7 @@ private:
         add("walls", wallPass(), Initial::No, whyNoWallPressure());
         add("pressure", onFluid<ComputeForces<K, inner, TermList<PressureForce>, Forces::Alone>>);
         holdBack(Initial::No);
-        plan_.add(
-            "extremes", [&flow = flow_] { boundSplitMove(flow); }, Initial::No,
-            keepsLists ? "" : noLists);
+        bound([](auto& flow) { boundSplitMove(flow); });
         add("integrate", onFluid<Integrate<Kick | Drift>>);
         end();
     }
@@ -137,9 +127,7 @@ private:
         weigh(Moment::PressureSolved);
         addPartForces(Initial::No, true);
         move({2, true});
-        plan_.add(
-            "extremes", [&flow = flow_] { boundMove(flow); }, Initial::No,
-            keepsLists ? "" : noLists);
+        bound([](auto& flow) { boundMove(flow); });
         add("drift", onFluid<Integrate<Drift>>);
         end();
     }
@@ -230,6 +218,10 @@ private:
     }
     void weigh(Moment moment) {
         forEachPart(parts_, [&](auto& part) { part.weigh(plan_, moment); });
+    }
+    template <class F> void bound(F f) {
+        plan_.add(
+            "extremes", [f, &flow = flow_] { f(flow); }, Initial::No, keepsLists ? "" : noLists);
     }
     // Solids and objects, by the forces that were found last; also those that the mouse drags.
     void move(ShareOfStep share) {

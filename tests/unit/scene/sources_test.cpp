@@ -100,6 +100,39 @@ TEST(SourceSchedule, IsTheIntegralOfWhatItsFileSays) {
             }
 }
 
+// Wherever a ramp is cut off, what has come until then is its integral.
+TEST(SourceSchedule, FollowsARampUntilItStops) {
+    const TableFile ramp("t,velocity\n0,0\n10,1\n");
+    for (const float stop : {1.0f, 5.0f, 10.0f, 12.0f}) {
+        const Scene s = sceneWith({R"(sources=[{"path":")" + ramp.path.string() + R"("}])"});
+        Source source = s.sources[0];
+        source.stop = stop;
+        const double due = stop <= 10 ? stop * stop / 20.0 : 5.0 + (stop - 10.0);
+        EXPECT_NEAR(wayAt(scheduleOf(s, source), 20), due, 1e-6) << stop;
+    }
+}
+
+// However the fluid is placed, only what is held begins before a mouth.
+TEST(MouthRoom, HasOnlyWhatIsHeld) {
+    for (const char* placement : {"lattice", "relaxed"}) {
+        const Scene s = sceneWith({R"(sources=[{"velocity":1,"width":0.3,"height":0.3}])",
+                                   std::string("simulation.placement=") + placement,
+                                   R"(fluid.bodies=[{"min":[0,0,0],"max":[1,1,1]}])"});
+        const Placement placed = placeParticles(s);
+        const MouthRoom mouths(s);
+        int64_t held = 0;
+        for (size_t i = 0; i < placed.positions.size(); ++i) {
+            held += placed.heldBy[i] > 0;
+            if (placed.heldBy[i] == 0) {
+                EXPECT_FALSE(mouths.takes(toDouble(placed.positions[i]))) << placement << " " << i;
+            }
+        }
+        EXPECT_EQ(held, particlesInMouth(s, s.sources[0])) << placement;
+        EXPECT_EQ(placed.velocities.size(), placed.positions.size());
+        EXPECT_EQ(placed.pressures.size(), placed.positions.size());
+    }
+}
+
 // In one line that names the knob and a way out.
 TEST(SourceChecks, RefuseWhatCannotBe) {
     const std::string tap = R"(sources=[{"velocity":1%s}])";
@@ -122,6 +155,9 @@ TEST(SourceChecks, RefuseWhatCannotBe) {
         {{with(R"(,"normal":[0,0,0])")}, "no direction"},
         {{with(R"(,"stop":1,"start":2)")}, "not after start"},
         {{with(R"(,"width":0.01)")}, "narrower than"},
+        {{with(R"(,"width":100)"), "simulation.spacing=0.01"}, "domain's diagonal"},
+        {{with(R"(,"width":1.2,"height":1.2)"), "simulation.spacing=0.001"}, "are the most"},
+        {{R"(sources=[{"velocity":1},{"velocity":1,"center":[0.5,0.51,0.5]}])"}, "move them apart"},
         {{with(R"(,"center":[0.5,0.95,0.5])")}, "beyond the domain"},
         {{with(""), R"(solids=[{"shape":"sphere","center":[0.5,0.6,0.5],"radius":0.05}])"},
          "solids[0] is there"},

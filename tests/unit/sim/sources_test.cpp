@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 #include <set>
 
 namespace spindrift {
@@ -141,6 +142,12 @@ TEST(Sources, NoIdIsUsedTwiceAndWhatIsThereIsWhatCameLessWhatLeft) {
             EXPECT_EQ(int(there.size()), simulation->fluidCount());
             EXPECT_EQ(simulation->particle(*there.rbegin()).id, *there.rbegin());
             EXPECT_THROW(simulation->particle(*gone.begin()), Error);
+            for (const int id : there) {
+                const std::optional<Particle> found = simulation->find(id);
+                ASSERT_TRUE(found.has_value()) << nameOf(s) << ": " << id;
+                EXPECT_EQ(found->id, id);
+            }
+            for (const int id : gone) EXPECT_FALSE(simulation->find(id)) << nameOf(s);
         }
 }
 
