@@ -190,7 +190,7 @@ TEST(Fitting, WallsStayOutsideBesideWhatStandsAtTheirEnds) {
                 EXPECT_LT(p.x, 0);
                 nearest = std::min(nearest, -double(p.x) / double(Spacing));
             }
-            EXPECT_NEAR(nearest, 0.5, 0.03);
+            EXPECT_NEAR(nearest, 0.5 * latticeStep(scene).x / double(Spacing), 0.03);
         }
 }
 
