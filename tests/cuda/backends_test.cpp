@@ -124,6 +124,21 @@ TEST(SolvedPressures, AgreeToRounding) {
     }
 }
 
+// After so many steps; density rings with sound, so that its error is the mean of the last third.
+Measurement after(Simulation& simulation, int steps) {
+    constexpr int Looks = 10;
+    simulation.step(2 * steps / 3);
+    Measurement m;
+    double error = 0;
+    for (int k = 0; k < Looks; ++k) {
+        simulation.step(steps / (3 * Looks));
+        m = simulation.measure();
+        error += m.densityError / Looks;
+    }
+    m.densityError = error;
+    return m;
+}
+
 // The most that runs which begin a rounding error apart differ by from this one after as many
 // steps.
 struct Scatter {
@@ -132,13 +147,12 @@ struct Scatter {
 double energyOf(const Measurement& m) { return m.kineticEnergy + m.potentialEnergy; }
 Scatter scatterOf(const Scene& scene, const Measurement& m) {
     Scatter scatter;
-    for (float nudge : {5e-7f, -5e-7f, 1e-6f, -1e-6f, 2e-6f, -2e-6f, 4e-6f, -4e-6f}) {
+    for (float nudge : {1e-6f, -1e-6f, 2e-6f, -2e-6f}) {
         Placement nudged = placeParticles(scene);
         for (Vec3& x : nudged.positions) x = (1 + nudge) * x;
         for (Vec3& u : nudged.velocities) u = (1 + nudge) * u;
         auto run = onCpu(scene, nudged);
-        run->step(int(m.steps));
-        const Measurement n = run->measure();
+        const Measurement n = after(*run, int(m.steps));
         scatter.energy = std::max(scatter.energy, std::abs(energyOf(n) - energyOf(m)));
         scatter.centerOfMass =
             std::max(scatter.centerOfMass, length(n.centerOfMass - m.centerOfMass));
@@ -156,8 +170,7 @@ TEST_P(Backends, SumsAgreeAfterManySteps) {
             GTEST_SKIP() << "so few particles see the mesh as thin";
     auto cpu = onCpu(scene, placeParticles(scene)), gpu = onGpu(scene, placeParticles(scene));
     const int steps = factsOf(scene).solvesPressure ? 60 : 300;  // of five times the length
-    cpu->step(steps), gpu->step(steps);
-    const Measurement a = cpu->measure(), b = gpu->measure();
+    const Measurement a = after(*cpu, steps), b = after(*gpu, steps);
     const double height = scene.domain.max.y - scene.domain.min.y;
     // Once the few hundred particles of the emulated GPU's scenes move chaotically, backends may
     // differ as runs of the CPU do.
