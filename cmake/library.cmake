@@ -24,8 +24,8 @@ install(DIRECTORY include/spindrift DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMP
 foreach(header
     core/color_map.h core/error.h core/pass_time.h core/vec.h core/vertex.h
     scene/check.h scene/json.h scene/particles.h scene/sample_object.h scene/sample_solid.h scene/scene.h
-    sim/energy_ledger.h sim/object_driver.h sim/object_state.h sim/run_state.h sim/simulation.h sim/solid_motion.h
-    sim/step_state.h)
+    sim/energy_ledger.h sim/object_driver.h sim/object_state.h sim/run_state.h sim/simulation.h
+    sim/solid_motion.h sim/step_state.h)
   cmake_path(GET header PARENT_PATH folder)
   install(FILES source/${header} COMPONENT library
     DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/spindrift/${folder})

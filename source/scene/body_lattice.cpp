@@ -19,9 +19,6 @@ double leastStep(const Lattice& l) {
 
 namespace {
 
-// Counts beyond this stay here, so that a product of three fits in 64 bits.
-constexpr double MaxPlanes = 2e6;
-
 int64_t planes(double ratio) {
     return std::isfinite(ratio) ? int64_t(std::clamp(ratio, 0.0, MaxPlanes)) : int64_t(MaxPlanes);
 }

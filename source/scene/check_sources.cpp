@@ -53,11 +53,28 @@ void checkSize(const Scene& scene, const Source& source, const std::string& path
                                  points, MostPoints));
 }
 
+void checkRates(const Rates& rates, const std::string& path) {
+    for (size_t i = 0; i < rates.size(); ++i) {
+        if (!std::isfinite(rates[i].time) || (i > 0 && rates[i].time <= rates[i - 1].time))
+            refuse(path, fmt::format("row {}: t = {} s is not after the row before; put times in "
+                                     "order",
+                                     i + 1, rates[i].time));
+        if (!(rates[i].value >= 0))
+            refuse(path, fmt::format("row {}: {} is below 0; fluid that goes back needs a sink",
+                                     i + 1, rates[i].value));
+    }
+}
+
 void checkNumbers(const Scene& scene, const Source& source, const std::string& path) {
-    const int given = (source.velocity > 0) + (source.flow > 0) + !source.path.empty();
-    if (given == 0) refuse(path, "gives nothing; set velocity, flow or path");
+    const int given = (source.velocity > 0) + (source.flow > 0) + !source.velocities.empty() +
+                      !source.flows.empty();
+    if (given == 0) refuse(path, "gives nothing; set velocity, flow, velocities, flows or path");
     if (given > 1)
-        refuse(path, "says more than once how much it gives; keep one of velocity, flow and path");
+        refuse(path,
+               "says more than once how much it gives; keep one of velocity, flow, "
+               "velocities, flows and path");
+    checkRates(source.velocities, path + ".velocities");
+    checkRates(source.flows, path + ".flows");
     if (length(source.normal) == 0) refuse(path + ".normal", "has no direction; name one");
     if (scene.simulation.dimensions == 2 && source.normal.z != 0)
         refuse(path + ".normal", "there is no z in two dimensions; set that to 0");
@@ -74,9 +91,6 @@ void checkNumbers(const Scene& scene, const Source& source, const std::string& p
                                  "widen it or lower the spacing",
                                  extent, scene.simulation.spacing));
     checkSize(scene, source, path);
-    try {
-        scheduleOf(scene, source);
-    } catch (const Error& error) { refuse(path + ".path", error.what()); }
     const SourceLattice lattice = latticeOf(scene, source);
     const double fastest = largestSpeed(scene, source);
     if (scene.time.mode == TimeMode::Fixed && fastest * scene.time.step > lattice.apart)

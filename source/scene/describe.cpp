@@ -30,6 +30,7 @@ Json typeOf(Vec3d, const Knob& k) { return listOf(k, 3, 3); }
 Json typeOf(const Keyframes&, const Knob& k) {
     return {{"type", "array"}, {"items", {{"anyOf", {listOf(k, 4, 5), listOf(k, 9, 9)}}}}};
 }
+Json typeOf(const Rates&, const Knob& k) { return {{"type", "array"}, {"items", listOf(k, 2, 2)}}; }
 template <class E>
 requires std::is_enum_v<E> Json typeOf(E value, const Knob&) {
     return {{"enum", enumNames(value)}};
@@ -75,6 +76,11 @@ std::string plain(const Keyframes& keyframes) {
         text += fmt::format("[{},{},{}]", k.time, plain(k.offset), k.turn);
     return "[" + text + "]";
 }
+std::string plain(const Rates& rates) {
+    std::string text;
+    for (const Rate& r : rates) text += fmt::format("[{},{}]", r.time, r.value);
+    return "[" + text + "]";
+}
 template <class E>
 requires std::is_enum_v<E> std::string plain(E value) { return enumNames(value)[size_t(value)]; }
 
@@ -86,7 +92,7 @@ template <class T> std::string allowed(const T& value, const Knob& knob) {
         return "true|false";
     else if constexpr (std::is_same_v<T, std::string>)
         return "text";
-    else if constexpr (std::is_same_v<T, Keyframes>)
+    else if constexpr (std::is_same_v<T, Keyframes> || std::is_same_v<T, Rates>)
         return "list of lists of numbers";
     else
         return allowedRange(knob);
@@ -140,7 +146,8 @@ std::string jsonSchema() {
             property["default"] = decimal(value);
         else if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Vec3d>)
             property["default"] = {value.x, value.y, value.z};
-        else if constexpr (!std::is_same_v<std::decay_t<decltype(value)>, Keyframes>)
+        else if constexpr (!std::is_same_v<std::decay_t<decltype(value)>, Keyframes> &&
+                           !std::is_same_v<std::decay_t<decltype(value)>, Rates>)
             property["default"] = value;
         Json& properties = parentProperties(root, path);
         properties[path] = property;

@@ -2,6 +2,7 @@
 
 #include "scene/historical.h"
 #include "scene/motion.h"
+#include "scene/sources.h"
 #include "scene/read_knobs.h"
 
 #include <algorithm>
@@ -71,6 +72,11 @@ Json toJson(const Keyframes& keyframes) {
                    : list.push_back({k.time, k.offset.x, k.offset.y, k.offset.z, k.turn});
     return list;
 }
+Json toJson(const Rates& rates) {
+    Json list = Json::array();
+    for (const Rate& r : rates) list.push_back({r.time, r.value});
+    return list;
+}
 template <class E>
 requires std::is_enum_v<E> Json toJson(E value) { return enumNames(value)[size_t(value)]; }
 
@@ -107,6 +113,12 @@ void write(const Json& json, const std::string& indent, std::string& out) {
     out += fmt::format("\n{}{}", indent, json.is_object() ? '}' : ']');
 }
 
+// Motions and what sources give over time; a relative path starts at the folder.
+void readTables(Scene& scene, const std::string& folder, const std::string& place) {
+    readMotions(scene, folder, place);
+    readRates(scene, folder, place);
+}
+
 // What follows "=": JSON if it is, numbers with commas as a list, else plain text.
 Json looseValue(const std::string& text) {
     if (text.empty()) return text;
@@ -123,7 +135,7 @@ Scene parseScene(const std::string& text, const std::string& place) {
     if (root.is_object() && !root.contains("version")) return readHistorical(root, place);
     Scene scene;
     readScene(root, scene, Place{place, ""});
-    readMotions(scene, std::filesystem::path(place).parent_path().string(), place);
+    readTables(scene, std::filesystem::path(place).parent_path().string(), place);
     return scene;
 }
 
@@ -143,7 +155,6 @@ Scene loadScene(const std::string& file) {
     for (Solid& solid : scene.solids) findBeside(solid.path);
     for (Object& object : scene.objects) findBeside(object.path);
     findBeside(scene.view.colorFile);
-    for (Source& source : scene.sources) findBeside(source.path);
     return scene;
 }
 
@@ -175,7 +186,7 @@ void setKnob(Scene& scene, const std::string& assignment, const std::string& ori
         Json root;
         placeFor(root, path) = value;
         readScene(root, changed, place);
-        readMotions(changed, "", origin);
+        readTables(changed, "", origin);
         scene = changed;
         return;
     }
@@ -189,7 +200,7 @@ void setKnob(Scene& scene, const std::string& assignment, const std::string& ori
         assign(knobValue, isText && !value.is_string() ? Json(text) : value, knob, place, path);
     });
     if (found) {
-        readMotions(changed, "", origin);
+        readTables(changed, "", origin);
         scene = changed;
         return;
     }

@@ -154,9 +154,6 @@ std::vector<Foot> feetAlong(const Scene& scene, int axis) {
     return feet;
 }
 
-// Counts beyond this stay here, so that a product of three fits in 64 bits.
-constexpr double MaxPlanes = 2e6;
-
 }  // namespace
 
 Vec3d latticeStep(const Scene& scene) {

@@ -16,6 +16,9 @@ Vec3d latticeStep(const Scene&);
 // Whether all sides of bodies, and what solids leave of them, are whole multiples of the spacing.
 bool areSidesWhole(const Scene&);
 
+// Counts of planes beyond this stay here, so that a product of three fits in 64 bits.
+inline constexpr double MaxPlanes = 2e6;
+
 // Cells of the domain's walls along an axis, from `low` on, m from the domain's lower corner.
 struct WallCells {
     double low;

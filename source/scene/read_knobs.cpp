@@ -214,6 +214,23 @@ void assign(Keyframes& value, const Json& json, const Knob& knob, const Place& p
     value = keyframes;
 }
 
+void assign(Rates& value, const Json& json, const Knob& knob, const Place& place,
+            const std::string& path) {
+    const auto isRow = [](const Json& row) {
+        return row.is_array() && row.size() == 2 && row[0].is_number() && row[1].is_number();
+    };
+    if (!json.is_array() || !std::all_of(json.begin(), json.end(), isRow))
+        place.fail(path, fmt::format("expected a list of times in s and values [[t, {}], ...], "
+                                     "found {}",
+                                     knob.unit, shown(json)));
+    Rates rates;
+    for (const Json& row : json) rates.push_back({row[0].get<double>(), row[1].get<double>()});
+    if (!inRange(rates, knob))
+        place.fail(path,
+                   fmt::format("{} is out of range, allowed: {}", shown(json), allowedRange(knob)));
+    value = rates;
+}
+
 int enumIndex(const Json& json, const std::vector<std::string>& names, const Place& place,
               const std::string& path) {
     const std::string name = json.is_string() ? json.get<std::string>() : "";

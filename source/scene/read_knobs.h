@@ -43,6 +43,11 @@ inline bool inRange(Int3 v, const Knob& knob) {
     return inRange(v.x, knob) && inRange(v.y, knob) && inRange(v.z, knob);
 }
 inline bool inRange(const Keyframes&, const Knob&) { return true; }  // checkScene looks closer
+inline bool inRange(const Rates& rates, const Knob& knob) {
+    for (const Rate& rate : rates)
+        if (!inRange(float(rate.value), knob)) return false;
+    return true;
+}
 inline bool inRange(bool, const Knob&) { return true; }
 inline bool inRange(const std::string&, const Knob&) { return true; }
 template <class E>
@@ -58,6 +63,7 @@ void assign(Vec3&, const Json&, const Knob&, const Place&, const std::string& pa
 void assign(Vec3d&, const Json&, const Knob&, const Place&, const std::string& path);
 void assign(Int3&, const Json&, const Knob&, const Place&, const std::string& path);
 void assign(Keyframes&, const Json&, const Knob&, const Place&, const std::string& path);
+void assign(Rates&, const Json&, const Knob&, const Place&, const std::string& path);
 int enumIndex(const Json&, const std::vector<std::string>& names, const Place&,
               const std::string& path);
 template <class E>

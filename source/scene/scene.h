@@ -99,6 +99,13 @@ struct Keyframe {
 };
 using Keyframes = std::vector<Keyframe>;
 
+// What something is at one time, s.
+struct Rate {
+    double time = 0, value = 0;
+    bool operator==(const Rate&) const = default;
+};
+using Rates = std::vector<Rate>;  // in the order of their times
+
 // An obstacle: fluid flows around it. It stands still, goes on and on with `velocity` and `spin`,
 // or moves as its keyframes say (scene/motion.h). With a density it floats: that is
 // how it moves at the start, and fluid, gravity and what it runs into do the rest.
@@ -171,7 +178,8 @@ struct Source {
     float radius = 0.05f;           // m
     float velocity = 0;             // m/s, mean over the mouth
     float flow = 0;                 // m³/s, in two dimensions m²/s; instead of a velocity
-    std::string path;               // CSV with velocities or flows over time, instead of both
+    Rates velocities, flows;        // these over time, instead of one for all; evenly between
+    std::string path;               // a CSV that becomes one of them when the scene is read
     Profile profile = Profile::Uniform;
     float start = 0, stop = 0;  // s; stop 0 = never
     float volume = 0;           // m³, in two dimensions m²: what it gives in all, 0 = no limit

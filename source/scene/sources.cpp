@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <numbers>
 
@@ -68,32 +69,14 @@ void addDisc(const Scene& scene, const Source& source, const Axes& axes, SourceL
     out.points = best;
 }
 
-// (time, mean velocity), in the order of their times, as asked for and before it is opened and
-// closed.
-std::vector<std::pair<double, double>> velocitiesOf(const Scene& scene, const Source& source) {
+// Mean velocities, as asked for and before it is opened and closed.
+Rates velocitiesOf(const Scene& scene, const Source& source) {
     const double area = latticeOf(scene, source).area;
-    if (source.path.empty())
+    if (!source.velocities.empty()) return source.velocities;
+    if (source.flows.empty())
         return {{source.start, source.flow > 0 ? source.flow / area : double(source.velocity)}};
-    const char* unit = scene.simulation.dimensions == 2 ? "m²/s" : "m³/s";
-    const Table table =
-        readStrictTable(source.path, {{"t", "s", true}, {"velocity", "m/s"}, {"flow", unit}});
-    const auto refuse = [&](const std::string& why) {
-        throw Error(Failure::Scene, fmt::format("{}: {}", source.path, why));
-    };
-    if (table.has("velocity") == table.has("flow"))
-        refuse("needs one column of velocity and flow, beside t");
-    const std::vector<double>&times = table.at("t"),
-          &values = table.at(table.has("flow") ? "flow" : "velocity");
-    std::vector<std::pair<double, double>> out;
-    for (size_t i = 0; i < times.size(); ++i) {
-        if (i > 0 && times[i] <= times[i - 1])
-            refuse(fmt::format("line {}: t = {} s is not after the line before; put times in order",
-                               table.lines[i], times[i]));
-        if (values[i] < 0)
-            refuse(fmt::format("line {}: {} is below 0; fluid that goes back needs a sink",
-                               table.lines[i], values[i]));
-        out.push_back({times[i], table.has("flow") ? values[i] / area : values[i]});
-    }
+    Rates out = source.flows;
+    for (Rate& rate : out) rate.value /= area;
     return out;
 }
 
@@ -152,18 +135,42 @@ SourceLattice latticeOf(const Scene& scene, const Source& source) {
     return out;
 }
 
+void readRates(Scene& scene, const std::string& folder, const std::string& place) {
+    const char* unit = scene.simulation.dimensions == 2 ? "m²/s" : "m³/s";
+    for (Source& source : scene.sources) {
+        if (source.path.empty()) continue;
+        const std::string path = (std::filesystem::path(folder) / source.path).string();
+        try {
+            const Table table =
+                readStrictTable(path, {{"t", "s", true}, {"velocity", "m/s"}, {"flow", unit}});
+            if (table.has("velocity") == table.has("flow"))
+                throw Error(Failure::Scene,
+                            path + ": needs one column of velocity and flow, beside t");
+            Rates& rates = table.has("flow") ? source.flows : source.velocities;
+            rates.clear();
+            for (size_t i = 0; i < table.rows(); ++i)
+                rates.push_back(
+                    {table.at("t")[i], table.at(table.has("flow") ? "flow" : "velocity")[i]});
+        } catch (const Error& error) {
+            throw Error(error.failure, fmt::format("{}: sources[{}].path: {}", place,
+                                                   &source - scene.sources.data(), error.what()));
+        }
+        source.path.clear();
+    }
+}
+
 std::vector<SourceKey> scheduleOf(const Scene& scene, const Source& source) {
     const auto rows = velocitiesOf(scene, source);
     const double end = source.stop > 0 ? double(source.stop) : 1e300;
     auto speedAt = [&](double t) {
-        if (t <= rows.front().first) return rows.front().second;
+        if (t <= rows.front().time) return rows.front().value;
         for (size_t i = 1; i < rows.size(); ++i)
-            if (t < rows[i].first) {
+            if (t < rows[i].time) {
                 const auto [t0, v0] = rows[i - 1];
                 const auto [t1, v1] = rows[i];
                 return v0 + (v1 - v0) * (t - t0) / (t1 - t0);
             }
-        return rows.back().second;
+        return rows.back().value;
     };
     std::vector<double> times = {source.start};
     for (const auto& [t, v] : rows)
@@ -191,8 +198,7 @@ double wayAt(const std::vector<SourceKey>& keys, double time) {
 
 double largestSpeed(const Scene& scene, const Source& source) {
     double most = 0;
-    for (const auto& [time, velocity] : velocitiesOf(scene, source))
-        most = std::max(most, velocity);
+    for (const Rate& rate : velocitiesOf(scene, source)) most = std::max(most, rate.value);
     return most * latticeOf(scene, source).largestShare();
 }
 

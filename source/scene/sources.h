@@ -42,7 +42,9 @@ struct SourceKey {
     double speed;  // m/s
     double slope;  // m/s²
 };
-// Throws Error (Scene) where the source's file can't be read.
+// Reads each source's file (a path relative to `folder`) into its velocities or flows, and forgets
+// the path: a run that goes on needs no file. Throws Error (Scene).
+void readRates(Scene&, const std::string& folder, const std::string& place);
 std::vector<SourceKey> scheduleOf(const Scene&, const Source&);
 double wayAt(const std::vector<SourceKey>&, double time);
 // m/s, of any of its particles at any time.

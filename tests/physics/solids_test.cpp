@@ -127,6 +127,18 @@ TEST(Solids, AreLiftedByTheWeightOfTheirWater) {
     EXPECT_NEAR(square / (weight * 0.04), 1, 0.02);
 }
 
+// Of looks every 20 steps between two times, s.
+template <class Look>
+double meanOver(Simulation& simulation, double from, double until, const Look& look) {
+    double sum = 0;
+    int looks = 0;
+    while (simulation.clock().time < until) {
+        simulation.step(20);
+        if (simulation.clock().time >= from) sum += look(simulation.measure()), ++looks;
+    }
+    return sum / looks;
+}
+
 // A dam bears the levels on its sides to where it stands on floor and walls: what stands in them
 // behind its faces is the dam's, as far as fluid presses along the wall.
 TEST(Solids, BearWhatPressesTheirFeet) {
@@ -146,19 +158,13 @@ TEST(Solids, BearWhatPressesTheirFeet) {
                       "max":[0.48,0.2,0.2],"pressure":"hydrostatic"}])")})
                 setKnob(scene, knob);
             auto simulation = makeSimulation(scene);
-            double sum = 0;
-            int looks = 0;
-            while (simulation->clock().time < 0.6) {
-                simulation->step(20);
-                if (simulation->clock().time < 0.3) continue;
-                const Measurement now = simulation->measure();
+            const double share = meanOver(*simulation, 0.3, 0.6, [&](const Measurement& now) {
                 const double left = now.solids[0].position.x - 2 * Dx, right = left + 4 * Dx,
                              deep = Deep * 0.2 / left, shallow = Shallow * 0.2 / (0.48 - right);
-                sum += now.solids[0].pressureForce.x /
+                return now.solids[0].pressureForce.x /
                        (Rho * G * Wide * (deep * deep - shallow * shallow) / 2);
-                ++looks;
-            }
-            EXPECT_NEAR(sum / looks, 1, 0.03);
+            });
+            EXPECT_NEAR(share, 1, 0.03);
         }
 }
 
@@ -173,14 +179,9 @@ TEST(Solids, BearOnlyWhatIsAboveThem) {
           R"(fluid.bodies=[{"shape":"block","min":[0,0,0],"max":[0.4,0.32,0.4]}])"})
         setKnob(scene, knob);
     auto simulation = makeSimulation(scene);
-    double sum = 0;
-    int looks = 0;
-    while (simulation->clock().time < 1) {
-        simulation->step(20);
-        if (simulation->clock().time < 0.6) continue;
-        sum += simulation->measure().solids[0].pressureForce.y, ++looks;
-    }
-    EXPECT_NEAR(sum / looks / (-Rho * G * Above * Side * Side), 1, 0.03);
+    const double force = meanOver(
+        *simulation, 0.6, 1, [](const Measurement& now) { return now.solids[0].pressureForce.y; });
+    EXPECT_NEAR(force / (-Rho * G * Above * Side * Side), 1, 0.03);
 }
 
 }  // namespace

@@ -53,6 +53,7 @@ bool edit(int& value, const Knob& knob, const std::string&) {
 bool edit(bool& value, const Knob&, const std::string&) { return ImGui::Checkbox("", &value); }
 
 bool edit(Keyframes&, const Knob&, const std::string&) { return false; }  // no live knob
+bool edit(Rates&, const Knob&, const std::string&) { return false; }      // nor is this
 bool edit(Vec3d&, const Knob&, const std::string&) { return false; }      // nor is this
 bool edit(std::string& value, const Knob&, const std::string&) {
     return ImGui::InputText("", &value);

@@ -34,7 +34,8 @@ public:
     // Room for a recorded step.
     void sorted() {
         if (!isOn()) return;
-        for (auto* field : {&pressure_, &ofWalls_, &viscosity_, &artificial_, &shifted_})
+        for (auto* field :
+             {&pressure_, &ofWalls_, &viscosity_, &artificial_, &unshiftedAcceleration_})
             field->resize(vectorSize(flow_.fluid.slots()));
         for (auto* field : {&undiffused_, &withWallsOwn_, &unshifted_})
             field->resize(size_t(flow_.fluid.slots()));
@@ -117,8 +118,7 @@ private:
         const Scene& s = flow_.scene;
         if (solves()) return 0;
         const View v = flow_.view();
-        const double sum =
-            flow_.device.template sum<Compression>(v.fluid.slots, SumCompression{v}).sum;
+        const double sum = flow_.device.template sum<Total>(v.fluid.slots, SumCompression{v}).sum;
         // Gradients are exact on the lattice, densities too, and so they differ by a factor where
         // both are sums.
         const double scale =
@@ -177,7 +177,7 @@ private:
     template <class Pass> void findRates() {
         View v = flow_.view();
         v.fluid.shiftVelocity = field(pressure_);  // what that was is not needed any more
-        v.fluid.shiftAcceleration = field(shifted_);
+        v.fluid.shiftAcceleration = field(unshiftedAcceleration_);
         const auto find = [&](View with, Field& out, bool shifts) {
             with.fluid.densityRate = ScalarField{out.data()};
             if constexpr (requires { typename Pass::Parameters; }) {
@@ -198,7 +198,7 @@ private:
 
     // --- what rows do ---
 
-    void sumKinetic(Buffer<Kinetic, Device>& out) {
+    void sumKinetic(Buffer<Total, Device>& out) {
         flow_.device.reduce(flow_.fluid.slots(), SumKinetic{flow_.fluid.view()}, out.data());
     }
     void bookStirring() {
@@ -262,7 +262,7 @@ private:
                             SumRatePower{v, found(undiffused_, true),
                                          found(withWallsOwn_, v.walls.flowVelocity.data),
                                          found(unshifted_, shiftsParticles(flow_.scene)),
-                                         field(shifted_), hasPotential()},
+                                         field(unshiftedAcceleration_), hasPotential()},
                             rates_.data());
         flow_.device.forEach(1, BookRates{ledger_.data(), rates_.data(), v.state, mass()});
     }
@@ -272,12 +272,12 @@ private:
     ForcePass pressurePass_ = nullptr, viscosityPass_ = nullptr, artificialPass_ = nullptr;
     void (EnergyBalance::*rate_)() = nullptr;
     Field pressure_{flow_.device}, viscosity_{flow_.device}, artificial_{flow_.device},
-        ofWalls_{flow_.device}, shifted_{flow_.device}, noPressure_{flow_.device},
+        ofWalls_{flow_.device}, unshiftedAcceleration_{flow_.device}, noPressure_{flow_.device},
         undiffused_{flow_.device}, withWallsOwn_{flow_.device}, unshifted_{flow_.device};
     Buffer<Power, Device> power_{flow_.device};
     Buffer<WallPower, Device> walls_{flow_.device};
     Buffer<RatePower, Device> rates_{flow_.device};
-    Buffer<Kinetic, Device> before_{flow_.device}, after_{flow_.device};
+    Buffer<Total, Device> before_{flow_.device}, after_{flow_.device};
     Buffer<EnergyLedger, Device> ledger_{flow_.device};
 };
 

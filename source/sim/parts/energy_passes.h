@@ -95,17 +95,18 @@ struct SumRatePower {
     }
 };
 
-// sum m u^2 / 2 per kg of the scene's particle, (m/s)^2.
-struct Kinetic {
+struct Total {
     double sum = 0;
-    HD_OUT void add(const Kinetic& o) { sum += o.sum; }
+    HD_OUT void add(const Total& o) { sum += o.sum; }
 };
+
+// m u^2 / 2 per kg of the scene's particle, (m/s)^2.
 struct SumKinetic {
     Particles p;
-    HD void addTo(Kinetic& k, int i) const {
+    HD void addTo(Total& kinetic, int i) const {
         if (p.id[i] < 0) return;
         const Vector<real> u = load(p.velocity, i);
-        k.add({double(massRatio(p, i)) * product(u, u) / 2});
+        kinetic.add({double(massRatio(p, i)) * product(u, u) / 2});
     }
 };
 
@@ -118,13 +119,9 @@ struct KeepAcceleration {
 
 // Energy of compression, J per kg: what pressure has taken up from rest density on, the integral of
 // p / rho^2. Where pressure has an end, as that of summed densities at 0, so has what it takes up.
-struct Compression {
-    double sum = 0;
-    HD_OUT void add(const Compression& o) { sum += o.sum; }
-};
 struct SumCompression {
     View v;
-    HD void addTo(Compression& c, int i) const {
+    HD void addTo(Total& c, int i) const {
         if (v.fluid.id[i] < 0) return;
         const double rho0 = v.c.restDensity, k = v.c.stiffness, p0 = v.c.backgroundPressure;
         const int gamma = v.c.gamma;
@@ -190,7 +187,7 @@ struct BookRates {
 struct BookStirring {
     using Index = int;
     EnergyLedger* ledger;
-    const Kinetic *before, *after;
+    const Total *before, *after;
     double mass;
     HD void operator()(int) const { ledger->stirred += mass * (after->sum - before->sum); }
 };

@@ -6,6 +6,7 @@
 #include "scene/particle_file.h"
 #include "scene/particles.h"
 #include "sim/simulation.h"
+#include "unit/scene/scene_of_file.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -28,16 +29,7 @@ protected:
     // A scene that begins with these particles.
     Scene sceneOf(const std::string& text, Formulation formulation) const {
         std::ofstream(path, std::ios::binary) << text;
-        Scene scene;
-        scene.compute.backend = Backend::Cpu;
-        scene.compute.threads = 1;
-        scene.simulation.formulation = formulation;
-        scene.domain = {{-1, 2, 3}, {0, 3, 4}};
-        scene.simulation.spacing = 0.1f;
-        scene.fluid.bodies.assign(1, Body{});
-        scene.fluid.bodies[0].shape = Shape::File;
-        scene.fluid.bodies[0].path = path.string();
-        return scene;
+        return sceneOfFile(path.string(), formulation);
     }
     static std::string refusalOf(const Scene& scene) {
         try {

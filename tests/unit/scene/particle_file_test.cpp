@@ -8,6 +8,7 @@
 #include "scene/json.h"
 #include "scene/particles.h"
 #include "sim/simulation.h"
+#include "unit/scene/scene_of_file.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -48,19 +49,6 @@ protected:
     void expectComplaint(const std::string& text, const std::string& words) const {
         const std::string said = complaint(write(text));
         EXPECT_NE(said.find(words), std::string::npos) << words << "\nin: " << said;
-    }
-    // A scene that begins with the particles of a file.
-    static Scene sceneOf(const std::string& path, Formulation formulation) {
-        Scene scene;
-        scene.compute.backend = Backend::Cpu;
-        scene.compute.threads = 1;
-        scene.simulation.formulation = formulation;
-        scene.domain = {{-1, 2, 3}, {0, 3, 4}};
-        scene.simulation.spacing = 0.1f;
-        scene.fluid.bodies.assign(1, Body{});
-        scene.fluid.bodies[0].shape = Shape::File;
-        scene.fluid.bodies[0].path = path;
-        return scene;
     }
 
     fs::path folder;
@@ -119,7 +107,7 @@ TEST_F(ParticleFiles, ParticlesNameTheirFluid) {
     for (int i = 0; i < 1000; ++i)
         text += fmt::format("{},{},{},{}\n", -1 + (i % 10 + 0.5) * 0.1,
                             2 + (i / 10 % 10 + 0.5) * 0.1, 3 + (i / 100 + 0.5) * 0.1, i % 3);
-    Scene scene = sceneOf(write(text, "f.csv"), Formulation::DeltaSph);
+    Scene scene = sceneOfFile(write(text, "f.csv"), Formulation::DeltaSph);
     for (float rho : {800.0f, 500.0f}) {
         Body block;
         block.min = scene.domain.min, block.max = block.min + Vec3{0.1f, 0.1f, 0.1f};
@@ -159,13 +147,13 @@ TEST_F(ParticleFiles, AMassIsThatOfAllParticlesOfTheScene) {
         return text;
     };
     const double side = std::cbrt(0.0009);
-    Scene scene = sceneOf(write(lattice(side, "Mass [kg]", 0.9, 0.9)), Formulation::Wcsph);
+    Scene scene = sceneOfFile(write(lattice(side, "Mass [kg]", 0.9, 0.9)), Formulation::Wcsph);
     EXPECT_NO_THROW(checkScene(scene));
     EXPECT_NEAR(particleMass(scene), 0.9, 1e-6);
     EXPECT_EQ(massInFile(write(lattice(side, "rho", 1000, 1000), "b.csv")), 0);
     auto refused = [&](const std::string& path, const std::string& words) {
         try {
-            checkScene(sceneOf(path, Formulation::Wcsph));
+            checkScene(sceneOfFile(path, Formulation::Wcsph));
             ADD_FAILURE() << words;
         } catch (const Error& e) {
             EXPECT_NE(std::string(e.what()).find(words), std::string::npos) << e.what();
@@ -254,7 +242,7 @@ TEST_F(ParticleFiles, MistakesInHdf5) {
 TEST_F(ParticleFiles, ABodyHasTheFilesParticles) {
     const std::string path =
         write("x,y,z,vx,vy,vz,rho,p\n-0.5,2.5,3.5,1,2,3,1010,77\n-0.25,2.5,3.5,0,0,0,990,0\n");
-    const Scene scene = sceneOf(path, Formulation::DeltaSph);
+    const Scene scene = sceneOfFile(path, Formulation::DeltaSph);
     EXPECT_NO_THROW(checkScene(scene));
     EXPECT_EQ(countParticles(scene).fluid, 2);
     const auto simulation = makeSimulation(scene);
@@ -275,12 +263,13 @@ TEST_F(ParticleFiles, ABodyHasTheFilesParticles) {
 }
 
 TEST_F(ParticleFiles, APressureGivesTheDensity) {
-    const Scene scene = sceneOf(write("x,y,z,p\n-0.5,2.5,3.5,5000\n"), Formulation::DeltaSph);
+    const Scene scene = sceneOfFile(write("x,y,z,p\n-0.5,2.5,3.5,5000\n"), Formulation::DeltaSph);
     EXPECT_NEAR(makeSimulation(scene)->particles()[0].pressure, 5000, 5);
 }
 
 TEST_F(ParticleFiles, OutsideTheDomainIsNamedByLine) {
-    const Scene scene = sceneOf(write("x,y,z\n-0.5,2.5,3.5\n\n-0.5,5,3.5\n"), Formulation::Wcsph);
+    const Scene scene =
+        sceneOfFile(write("x,y,z\n-0.5,2.5,3.5\n\n-0.5,5,3.5\n"), Formulation::Wcsph);
     try {
         checkScene(scene, "s.json");
         ADD_FAILURE() << "was taken";
@@ -327,8 +316,8 @@ TEST_F(ParticleFiles, AnotherSpacingIsRefused) {
     for (const int dimensions : {2, 3})
         for (const double shaken : {0.0, 0.3})
             for (const double ratio : {0.5, 0.8, 0.93, 0.97, 1.0, 1.03, 1.07, 1.3, 2.0}) {
-                Scene scene =
-                    sceneOf(write(rowsOf(dimensions, 0.06 * ratio, shaken)), Formulation::Wcsph);
+                Scene scene = sceneOfFile(write(rowsOf(dimensions, 0.06 * ratio, shaken)),
+                                          Formulation::Wcsph);
                 scene.simulation.dimensions = dimensions;
                 scene.simulation.spacing = 0.06f;
                 const std::string said = refusalOf(scene);
@@ -346,7 +335,7 @@ TEST_F(ParticleFiles, AnotherSpacingIsRefused) {
 TEST_F(ParticleFiles, DoubledParticlesAreCountedAndPlaced) {
     const std::string again = "-0.95,2.05,3.05\n-0.85,2.0501,3.05\n";
     const std::string said =
-        refusalOf(sceneOf(write(rowsOf(3, 0.1, 0, again)), Formulation::Wcsph));
+        refusalOf(sceneOfFile(write(rowsOf(3, 0.1, 0, again)), Formulation::Wcsph));
     EXPECT_NE(
         said.find(
             "2 of 731 particles are where another one is, the first at (-0.95, 2.05, 3.05) m"),
@@ -355,12 +344,12 @@ TEST_F(ParticleFiles, DoubledParticlesAreCountedAndPlaced) {
     EXPECT_NE(said.find("line 2 and "), std::string::npos) << said;
     EXPECT_NE(said.find("line 731; remove"), std::string::npos) << said;
     // One file twice, and the first and the last layer of a period.
-    Scene twice = sceneOf(write(rowsOf(3, 0.1, 0)), Formulation::Wcsph);
+    Scene twice = sceneOfFile(write(rowsOf(3, 0.1, 0)), Formulation::Wcsph);
     EXPECT_EQ(refusalOf(twice), "");
     twice.fluid.bodies.push_back(twice.fluid.bodies[0]);
     EXPECT_NE(refusalOf(twice).find("729 of 1458 particles"), std::string::npos)
         << refusalOf(twice);
-    Scene around = sceneOf(write("x,y,z\n-1,2.5,3.5\n0,2.5,3.5\n"), Formulation::Wcsph);
+    Scene around = sceneOfFile(write("x,y,z\n-1,2.5,3.5\n0,2.5,3.5\n"), Formulation::Wcsph);
     around.domain.max.x = 0.2f;
     EXPECT_EQ(refusalOf(around), "");
     around.domain.max.x = 0, around.domain.periodicX = true, around.simulation.spacing = 0.08f;
@@ -369,11 +358,12 @@ TEST_F(ParticleFiles, DoubledParticlesAreCountedAndPlaced) {
 
 TEST_F(ParticleFiles, DensitiesInAnotherUnitAreRefused) {
     const std::string row = "\n-0.5,2.5,3.5,1\n";
-    const std::string said = refusalOf(sceneOf(write("x,y,z,rho" + row), Formulation::DeltaSph));
+    const std::string said =
+        refusalOf(sceneOfFile(write("x,y,z,rho" + row), Formulation::DeltaSph));
     EXPECT_NE(said.find("rho is 1 to 1 kg/m³, and 1000 at rest; name its unit in the header"),
               std::string::npos)
         << said;
-    EXPECT_EQ(refusalOf(sceneOf(write("x,y,z,rho [g/cm^3]" + row), Formulation::DeltaSph)), "");
+    EXPECT_EQ(refusalOf(sceneOfFile(write("x,y,z,rho [g/cm^3]" + row), Formulation::DeltaSph)), "");
 }
 
 // In the classic formulation a particle does not count itself: a drop alone has no density.
@@ -393,7 +383,7 @@ TEST_F(ParticleFiles, LoneParticlesOfTheClassicFormulationAreTaken) {
         saveParticles(path, simulation->particles());
         for (const Formulation next :
              {Formulation::Classic, Formulation::Wcsph, Formulation::DeltaSph}) {
-            Scene again = sceneOf(path, next);
+            Scene again = sceneOfFile(path, next);
             again.simulation.kernel =
                 Kernel::CubicSpline;  // the only one of the classic formulation
             EXPECT_EQ(refusalOf(again), "") << name;
@@ -468,7 +458,7 @@ TEST_F(ParticleFiles, FilesAreCountedForTheMemory) {
     if (double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE)) > 300e9)
         GTEST_SKIP() << "this machine could hold it";
     try {
-        checkScene(sceneOf(path, Formulation::Wcsph));
+        checkScene(sceneOfFile(path, Formulation::Wcsph));
         ADD_FAILURE() << "was taken";
     } catch (const Error& error) {
         EXPECT_EQ(int(error.failure), int(Failure::Memory)) << error.what();

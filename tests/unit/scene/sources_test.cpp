@@ -77,8 +77,12 @@ TEST(SourceSchedule, IsTheIntegralOfWhatItsFileSays) {
         for (const float stop : {0.0f, 0.7f})
             for (const float volume : {0.0f, 0.003f}) {
                 Scene s = sceneWith({});
-                Source source;
-                source.path = file.path.string(), source.width = 0.2f, source.height = 0.1f;
+                s.sources.resize(1);
+                s.sources[0].path = file.path.string();
+                readRates(s, "", "here");
+                EXPECT_EQ(s.sources[0].path, "");
+                Source& source = s.sources[0];
+                source.width = 0.2f, source.height = 0.1f;
                 source.start = start, source.stop = stop, source.volume = volume;
                 const auto keys = scheduleOf(s, source);
                 double way = 0;
@@ -173,6 +177,10 @@ TEST(SourceChecks, RefuseWhatCannotBe) {
         {{R"(sinks=[{"min":[0,0,0],"max":[0,1,1]}])"}, "make it larger"},
         {{R"(sinks=[{"min":[2,0,0],"max":[3,1,1]}])"}, "outside of the domain"},
         {{R"(fluid.bodies=[])", R"(sinks=[{"min":[0,0,0],"max":[1,1,1]}])"}, "is empty"},
+        {{R"(sources=[{"velocities":[[1,1],[1,2]]}])"}, "put times in order"},
+        {{R"(sources=[{"flows":[[0,1]],"velocity":1}])"}, "more than once"},
+        {{R"(sources=[{"velocities":[[0,1,2]]}])"}, "[[t, m/s], ...]"},
+        {{R"(sources=[{"velocities":[[0,-1]]}])"}, "out of range"},
         {{file(both)}, "one column"},
         {{file(back)}, "put times in order"},
         {{file(negative)}, "below 0"},
