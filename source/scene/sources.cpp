@@ -71,11 +71,10 @@ void addDisc(const Scene& scene, const Source& source, const Axes& axes, SourceL
 
 // Mean velocities, as asked for and before it is opened and closed.
 Rates velocitiesOf(const Scene& scene, const Source& source) {
-    const double area = latticeOf(scene, source).area;
     if (!source.velocities.empty()) return source.velocities;
-    if (source.flows.empty())
-        return {{source.start, source.flow > 0 ? source.flow / area : double(source.velocity)}};
-    Rates out = source.flows;
+    if (source.velocity > 0) return {{source.start, source.velocity}};
+    const double area = latticeOf(scene, source).area;
+    Rates out = source.flows.empty() ? Rates{{source.start, source.flow}} : source.flows;
     for (Rate& rate : out) rate.value /= area;
     return out;
 }
