@@ -24,7 +24,8 @@ void change(int& value, const Knob& knob) {
 void change(bool& value, const Knob&) { value = !value; }
 template <class T> void change(Vec3Of<T>& value, const Knob&) { value.x += T(0.5); }
 void change(std::string& value, const Knob&) { value += "x"; }
-void change(Keyframes&, const Knob&) {}
+void change(Keyframes&, const Knob&) {}  // no live knob
+void change(Rates&, const Knob&) {}      // nor this
 template <class E>
 requires std::is_enum_v<E>
 void change(E& value, const Knob&) { value = E((int(value) + 1) % int(enumNames(value).size())); }

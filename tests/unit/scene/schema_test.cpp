@@ -124,8 +124,13 @@ struct Change {
     void operator()(const std::string&, Keyframes& v, const Knob&) const {
         v = {{0, {1, 2, 3}, 4}, {0.1f, {-1, 0, 0}, 0}};
     }
+    void operator()(const std::string& path, Rates& v, const Knob&) const {
+        v.clear();
+        if (path.ends_with(".velocities")) v = {{0.5f, 1.5f}, {2, 0.1f}};  // beside them no flows
+    }
     void operator()(const std::string& path, std::string& v, const Knob&) const {
-        if (path.ends_with(".motion")) return;  // is read and forgotten
+        if (path.ends_with(".motion") || path.starts_with("sources[0].path"))
+            return;  // are read and forgotten
         v += " \"new\" \\ \n\t \xc3\xbc // no comment";
     }
     void operator()(const std::string&, Vec3& v, const Knob& k) const {
@@ -154,6 +159,7 @@ TEST(Schema, SaveAndLoadIsTheIdentity) {
     cylinder.shape = Shape::Cylinder;
     scene.fluid.bodies = {Body{}, sphere, cylinder};
     scene.solids.resize(2);
+    scene.sources.resize(1);
     scene.output.probes = oneOfEachKind<Probe>();
     visitKnobs(scene, Change{});
     const Scene again = parseScene(writeScene(scene), "text");
