@@ -187,6 +187,13 @@ inline Surface boxSurface(Vec3d low, Vec3d high) {
     return s;
 }
 
+// One that no block stands for: a corner is pulled in by a ten thousandth of its sides.
+inline Surface dentedBoxSurface(Vec3d low, Vec3d high) {
+    Surface s = boxSurface(low, high);
+    s.vertices[0] = low + 1e-4 * (high - low);
+    return s.inTriangles(false);
+}
+
 // An icosahedron whose triangles are quartered `times` times and pushed out to a sphere.
 inline Surface sphereSurface(Vec3d center, double radius, int times) {
     const double g = std::numbers::phi;

@@ -35,7 +35,8 @@ std::vector<Poured> pouredIntoMeshes(const Scene& scene, const std::vector<Parti
         const Convex shape = convexOf(body, 3);
         const double rho = restDensity(scene, body), skin = 1e-3 * scene.simulation.spacing;
         const double each = double(particleMass(scene)) * rho / double(scene.fluid.restDensity);
-        Poured poured{b, 0, std::pow(shape.scale, 3) * shape.mesh->weigh().volume, 0};
+        Poured poured{b, 0, std::pow(double(body.scale), 3) * readMesh(body.path)->weigh().volume,
+                      0};
         for (const Particle& p : particles)
             if (shape.nearest(p.position - shape.middle).distance <= skin) poured.mass += each;
         poured.wanted = rho * poured.volume;

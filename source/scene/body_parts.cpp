@@ -72,26 +72,29 @@ void cutBy(const Scene& scene, const Solid& solid, const Body& body, int axis,
     if (!isFace(solid) || body.shape != Shape::Block || !coversAcross(scene, solid, body, axis))
         return out.push_back(body);
     const double low = body.min[axis], high = body.max[axis], near = 0.5 * dx;
-    const double from = solid.min[axis], to = solid.max[axis];
+    const Interval taken = extentAlong(scene, solid, axis);
+    const double from = scene.domain.min[axis] + taken.low,
+                 to = scene.domain.min[axis] + taken.high;
     const bool below = from - low > near, above = high - to > near,
                apart = from >= high || to <= low;
     const bool whole = (!below || isWhole((from - low) / dx)) &&
                        (!above || (isWhole((high - to) / dx) && isWhole((high - low) / dx)));
     if (apart || whole || !(below || above)) return out.push_back(body);
-    if (below) out.push_back(body), out.back().max[axis] = solid.min[axis];
-    if (above) out.push_back(body), out.back().min[axis] = solid.max[axis];
+    if (below) out.push_back(body), out.back().max[axis] = float(from);
+    if (above) out.push_back(body), out.back().min[axis] = float(to);
 }
 
 }  // namespace
 
 Interval extentAlong(const Scene& scene, const Form& form, int axis) {
     const double origin = scene.domain.min[axis], half = halfExtent(form)[axis];
-    if (form.shape == Shape::Cylinder)
-        return {form.center[axis] - half - origin, form.center[axis] + half - origin};
-    return {form.min[axis] - origin, form.max[axis] - origin};
+    if (form.shape == Shape::Block || form.shape == Shape::Wedge)
+        return {form.min[axis] - origin, form.max[axis] - origin};
+    const double middle = middleOf(form)[axis] - origin;
+    return {middle - half, middle + half};
 }
 
-bool isFace(const Solid& solid) { return solid.shape == Shape::Block && solid.isAsDrawn(); }
+bool isFace(const Solid& solid) { return solid.isAsDrawn() && isBlock(solid); }
 
 bool isBox(const Form& form) { return form.shape == Shape::Block || form.shape == Shape::Wedge; }
 

@@ -303,6 +303,7 @@ void checkMeshes(const Scene& scene) {
         if (solid.shape != Shape::Mesh) continue;
         const std::string path = fmt::format("solids[{}]", i);
         checkMesh(scene, solid, MostDomains, path);
+        if (isBlock(solid)) continue;
         try {
             readMesh(solid.path)->fieldSpacing(scene.simulation.spacing / solid.scale);
         } catch (const Error& error) { refuse(path + ".path", error.what()); }

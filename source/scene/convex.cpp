@@ -1,5 +1,7 @@
 #include "scene/convex.h"
 
+#include "core/error.h"
+
 #include <cmath>
 #include <numbers>
 
@@ -18,6 +20,24 @@ Vec3d halfExtent(const Form& form) {
     return half;
 }
 
+Vec3d middleOf(const Form& form) {
+    if (form.shape == Shape::Mesh) {
+        const auto mesh = readMesh(form.path);
+        return form.offset + 0.5 * double(form.scale) * (mesh->low() + mesh->high());
+    }
+    const bool cornered = form.shape == Shape::Block || form.shape == Shape::Wedge;
+    return cornered ? 0.5 * (toDouble(form.min) + toDouble(form.max)) : toDouble(form.center);
+}
+
+bool isBlock(const Form& form) {
+    if (form.shape != Shape::Mesh) return form.shape == Shape::Block;
+    try {
+        return readMesh(form.path)->isBox();
+    } catch (const Error&) {
+        return false;  // checkMeshes says what is wrong, and whose mesh it is
+    }
+}
+
 double reachOf(const Form& form) {
     return form.shape == Shape::Sphere ? double(form.radius) : length(halfExtent(form));
 }
@@ -30,16 +50,16 @@ void Convex::add(Vec3d direction, Vec3d through) {
 
 Convex convexOf(const Form& form, int dimensions) {
     const Vec3d half = halfExtent(form);
-    const bool cornered = form.shape == Shape::Block || form.shape == Shape::Wedge;
+    const bool cornered = isBlock(form) || form.shape == Shape::Wedge;
     Convex c;
     if (form.shape == Shape::Plane) {
         c.middle = toDouble(form.center);
         c.add(toDouble(form.normal), {});
         return c;
     }
-    if (form.shape == Shape::Mesh) {
+    if (form.shape == Shape::Mesh && !cornered) {
         c.mesh = readMesh(form.path), c.scale = form.scale;
-        c.middle = form.offset + 0.5 * c.scale * (c.mesh->low() + c.mesh->high());
+        c.middle = middleOf(form);
         for (int k = 0; k < 3; ++k) {
             Vec3d up{0, 0, 0};
             up[k] = 1;
@@ -47,9 +67,9 @@ Convex convexOf(const Form& form, int dimensions) {
         }
         return c;
     }
-    c.middle = cornered ? 0.5 * (toDouble(form.min) + toDouble(form.max)) : toDouble(form.center);
+    c.middle = middleOf(form);
     for (int k = 0; k < dimensions; ++k) {
-        const bool flat = form.shape == Shape::Block || (form.shape == Shape::Wedge && k == 2) ||
+        const bool flat = isBlock(form) || (form.shape == Shape::Wedge && k == 2) ||
                           (form.shape == Shape::Cylinder && k == int(form.axis));
         Vec3d up{0, 0, 0};
         up[k] = 1;

@@ -1,7 +1,8 @@
 #pragma once
 // Shapes as what their points have in common: below each of some planes, and within a radius of an
 // axis or a point. All shapes of a scene but meshes are convex and are described so, which makes
-// distances and collisions one formula. Of a mesh the planes are its bounding box.
+// distances and collisions one formula. Of a mesh the planes are its bounding box; one that fills
+// it is a block.
 #include "core/vec.h"
 #include "scene/mesh.h"
 #include "scene/scene.h"
@@ -43,6 +44,10 @@ private:
     void add(Vec3d direction, Vec3d through);
 };
 
+// Whether it is a block, or a mesh that is one: that has all that blocks have, layers of fluid that
+// meet its faces, and plates'.
+bool isBlock(const Form&);
+
 // In two dimensions shapes have no ends along z. Reads a mesh's file.
 Convex convexOf(const Form&, int dimensions);
 // As it begins: it may be turned.
@@ -51,6 +56,8 @@ Convex convexOf(const Solid&, int dimensions);
 // From a shape's middle to its farthest point, m.
 double reachOf(const Form&);
 
+// m, of a shape's bounding box, as in the scene; of a plane the point that it goes through.
+Vec3d middleOf(const Form&);
 // Half the extent of a shape along each axis, m; of a plane 0.
 Vec3d halfExtent(const Form&);
 // The same of the box around it as it begins.

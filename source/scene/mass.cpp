@@ -21,7 +21,7 @@ static Mass massOfMesh(const Solid& solid) {
 }
 
 Mass massOf(const Scene& scene, const Solid& solid) {
-    if (solid.shape == Shape::Mesh) return massOfMesh(solid);
+    if (solid.shape == Shape::Mesh && !isBlock(solid)) return massOfMesh(solid);
     const bool flat = scene.simulation.dimensions == 2;
     Vec3d half = halfExtent(solid);
     if (flat) half.z = 0.5;  // of a metre of depth
@@ -36,7 +36,7 @@ Mass massOf(const Scene& scene, const Solid& solid) {
     } else if (solid.shape == Shape::Sphere && !flat) {
         volume = 4 * pi / 3 * r * r * r;
         squares = {r * r / 5, r * r / 5, r * r / 5};
-    } else if (solid.shape != Shape::Block) {
+    } else if (!isBlock(solid)) {
         const int axis = flat ? 2 : int(solid.axis);
         volume = 2 * half[axis] * pi * r * r;
         for (int k = 0; k < 3; ++k)

@@ -66,6 +66,8 @@ Mesh::Mesh(const std::string& name, const std::vector<Vec3d>& vertices,
     triangles_ = inOrder(triangles_, order), shells_ = inOrder(net.shells, order);
     findBox();
     findSurface();
+    isBox_ = std::all_of(surface_.begin(), surface_.end(),
+                         [&](const Facet& facet) { return liesOnBox(facet); });
 }
 
 Facet Mesh::facetOf(int triangle) const {
@@ -79,6 +81,18 @@ void Mesh::findBox() {
         for (int v : t)
             low_ = lower(low_, vertices_[size_t(v)]), high_ = upper(high_, vertices_[size_t(v)]);
     for (const Vec3d& p : vertices_) onGrid_.push_back(gridPlace(p.y, p.z));
+}
+
+bool Mesh::liesOnBox(const Facet& facet) const {
+    const Vec3d size = high_ - low_;
+    const double near = std::max(precision_, 1e-5 * std::max({size.x, size.y, size.z}));
+    auto liesAt = [&](int axis, double place) {
+        return std::all_of(std::begin(facet.corner), std::end(facet.corner),
+                           [&](Vec3d p) { return std::abs(p[axis] - place) < near; });
+    };
+    for (int k = 0; k < 3; ++k)
+        if (liesAt(k, low_[k]) || liesAt(k, high_[k])) return true;
+    return false;
 }
 
 std::array<int64_t, 2> Mesh::gridPlace(double y, double z) const {

@@ -65,6 +65,8 @@ public:
     Vec3d low() const { return low_; }
     Vec3d high() const { return high_; }
     double area() const { return area_; }
+    // Whether it fills its bounding box: a block.
+    bool isBox() const { return isBox_; }
 
     // Of a body of density 1: volume, centroid, and the moments of inertia about it.
     struct Weight {
@@ -80,6 +82,7 @@ private:
     std::vector<double> changesAlong(double y, double z) const;
     bool holds(Vec3d p) const;
     void findBox();
+    bool liesOnBox(const Facet&) const;
     bool liesOn(int i, int j) const;
     void findSurface();
     void addSurface(const Facet&, const std::vector<Vec3d>& polygon, const std::vector<int>& covers,
@@ -96,6 +99,7 @@ private:
     BoxTree triangleTree_, surfaceTree_;
     Vec3d low_, high_;
     double area_ = 0, precision_ = 0;
+    bool isBox_ = false;
 };
 
 // OBJ, in double precision; STL, PLY and glTF. Remembers the files it has read until they change.

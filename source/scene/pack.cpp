@@ -30,7 +30,7 @@ namespace {
 
 // A block that lies between planes of the lattice of each body that it is near to.
 bool meetsLayers(const Scene& scene, const Solid& solid, const std::vector<Lattice>& lattices) {
-    if (solid.shape != Shape::Block || solid.turn != 0) return false;
+    if (!isBlock(solid) || solid.turn != 0) return false;
     for (size_t b = 0; b < lattices.size(); ++b)
         for (int k = 0; k < scene.simulation.dimensions; ++k) {
             if (!meet(scene, solid, scene.fluid.bodies[b])) continue;

@@ -350,7 +350,7 @@ static double mostInThinSolid(const Scene& scene, const Solid& solid) {
     double all = 2;
     for (int k = 0; k < scene.simulation.dimensions; ++k)
         all *= std::ceil(2 * halfExtent(solid)[k] / dx) + 2 * layers + 3;
-    if (solid.shape != Shape::Mesh) return all;
+    if (solid.shape != Shape::Mesh || isBlock(solid)) return all;
     const double apart = dx / double(solid.scale);
     return std::min(all, 4 * (layers + 2) * (readMesh(solid.path)->area() / (apart * apart) + 100));
 }
@@ -364,7 +364,8 @@ static double mostInSolid(const Scene& scene, const Solid& solid) {
         const double n = std::ceil(2 * halfExtent(solid)[k] / scene.simulation.spacing) + 1;
         all *= n, inner *= std::max(0.0, n - 2 * boundaryLayers(scene) - 2);
     }
-    if (solid.shape == Shape::Mesh) {  // near its surface, which may be anywhere in the box
+    if (solid.shape == Shape::Mesh &&
+        !isBlock(solid)) {  // near its surface, which may be anywhere in the box
         const double dx = scene.simulation.spacing / double(solid.scale);
         return std::min(
             all, 2 * (boundaryLayers(scene) + 1) * (readMesh(solid.path)->area() / (dx * dx) + 10));

@@ -256,7 +256,7 @@ SolidSample sampleSolid(const Scene& scene, const Solid& solid) {
     const double dx = scene.simulation.spacing;
     const bool flat = scene.simulation.dimensions == 2;
     Points points;
-    if (solid.shape == Shape::Block)
+    if (isBlock(solid))
         addBlock(scene, halfExtent(solid), layers, points);
     else if (solid.shape == Shape::Sphere && !flat)
         for (int k = 0; k < layers && (k + 0.5) * dx < double(solid.radius); ++k)

@@ -239,7 +239,7 @@ bool needsScreen(const Scene& scene, const Solid& solid) {
 }
 
 int faceOfPlate(const Scene& scene, const Solid& solid) {
-    const bool isPlate = solid.shape == Shape::Block && thinness(scene, solid) > 0;
+    const bool isPlate = isBlock(solid) && thinness(scene, solid) > 0;
     return isPlate ? 2 * thinAxis(scene, halfExtent(solid)) : -1;
 }
 

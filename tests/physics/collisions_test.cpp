@@ -64,7 +64,7 @@ TEST(Collisions, ThinPlatesStopAllFluidWhereItCame) {
         R"({"shape":"wedge","min":[-1,0.4,-0.2],"max":[2,0.43,1.2]})",
         R"({"shape":"cylinder","center":[0.5,0.41,0.5],"radius":0.8,"height":0.02})",
         R"({"shape":"plane","center":[0.5,0.42,0.5],"normal":[0.1,1,0]})",
-        mesh(boxSurface({-0.2, 0.4, -0.2}, {1.2, 0.42, 1.2}), "plate")};
+        mesh(dentedBoxSurface({-0.2, 0.4, -0.2}, {1.2, 0.42, 1.2}), "plate")};
     for (const std::string& plate : plates)
         for (const char* formulation : {"wcsph", "delta_sph", "delta_plus"})
             for (const char* integrator :
@@ -100,7 +100,8 @@ TEST(Collisions, ThinPlatesStopFluidWithPressure) {
             for (const char* shape : {"block", "plane", "mesh"}) {
                 if (dimensions == 2 && shape[0] == 'm') continue;
                 const std::string plate =
-                    shape[0] == 'm' ? mesh(boxSurface({-0.2, 0.4, -0.2}, {1.2, 0.41, 1.2}), "leaf")
+                    shape[0] == 'm'
+                        ? mesh(dentedBoxSurface({-0.2, 0.4, -0.2}, {1.2, 0.41, 1.2}), "leaf")
                     : shape[0] == 'b'
                         ? R"({"shape":"block","min":[-0.2,0.4,-0.2],"max":[1.2,0.41,1.2]})"
                         : R"({"shape":"plane","center":[0,0.41,0]})";
@@ -131,6 +132,28 @@ TEST(Collisions, BodiesStopFluidWhereItCame) {
     }
 }
 
+// A mesh that ends at the domain's walls, or at itself across a periodic axis, has no way in along
+// them: pressed into the corner of both for a second, no particle is more than a hundredth of a
+// spacing deep in its flank.
+TEST(Collisions, MeshesThatEndAtWallsHaveNoWayInThere) {
+    for (const double thick : {0.02, 0.075})
+        for (const char* motion : {"", R"(,"keyframes":[[0,0,0,0],[1,0,0.3,0]])"})
+            for (const char* periodic : {"false", "true"})
+                for (const double along : {-3.0, 3.0}) {
+                    const double end = 0.5 + thick;
+                    const std::vector<Vec3d> L{{0.5, -0.5, 0}, {0.9, -0.5, 0}, {0.9, -0.2, 0},
+                                               {end, -0.2, 0}, {end, 1.5, 0},  {0.5, 1.5, 0}};
+                    Scene scene =
+                        dustOf({"solids=[" + mesh(prismSurface(L, 0, 1), "profile", motion) + "]",
+                                fmt::format("simulation.gravity=5,0,{}", along),
+                                "walls.restitution=0", std::string("domain.periodic_z=") + periodic,
+                                R"(fluid.bodies=[{"shape":"block","min":[0.3,0.4,0],
+                             "max":[0.4,0.6,1]}])"});
+                    expectAll(fmt::format("{}{} {} {}", thick, motion, periodic, along), scene, 100,
+                              [](const Particle& p) { return p.position.x < 0.5005; });
+                }
+}
+
 TEST(Collisions, PlatesThatMoveTakeAlongWhatTheyMeet) {
     for (const char* integrator : {"symplectic_euler", "velocity_verlet", "predictor_corrector"})
         for (bool isMesh : {false, true}) {
@@ -139,7 +162,7 @@ TEST(Collisions, PlatesThatMoveTakeAlongWhatTheyMeet) {
                 R"(,"keyframes":[[0,0,0,0],[0.015,0.45,0,0],[0.045,0,0,0],[0.09,0.4,0,0]])";
             const std::string plate =
                 isMesh
-                    ? mesh(boxSurface({0.1, -0.2, -0.2}, {0.12, 1.2, 1.2}), "piston", keys)
+                    ? mesh(dentedBoxSurface({0.1, -0.2, -0.2}, {0.12, 1.2, 1.2}), "piston", keys)
                     : R"({"shape":"block","min":[0.1,-0.2,-0.2],"max":[0.12,1.2,1.2])" + keys + "}";
             Scene scene = dustOf(
                 {std::string("time.integrator=") + integrator, "walls.restitution=0",
@@ -163,7 +186,7 @@ TEST(Collisions, PaddlesThatTurnTakeAlongWhatTheyMeet) {
             const std::string spin = ",\"spin\":" + std::to_string(100 * degrees);
             const std::string paddle =
                 isMesh
-                    ? mesh(boxSurface({0.1, 0.49, 0.1}, {0.9, 0.51, 0.9}), "paddle", spin)
+                    ? mesh(dentedBoxSurface({0.1, 0.49, 0.1}, {0.9, 0.51, 0.9}), "paddle", spin)
                     : R"({"shape":"block","min":[0.1,0.49,0.1],"max":[0.9,0.51,0.9])" + spin + "}";
             const Scene scene = dustOf(
                 {"walls.restitution=0", "solids=[" + paddle + "]",
@@ -209,7 +232,7 @@ TEST(Collisions, PeriodicSidesHideNoPlate) {
             const std::string range =
                 fmt::format(R"("min":[{},-0.2,-0.2],"max":[{},1.2,1.2])", c.low, c.high);
             const std::string plate =
-                isMesh ? mesh(boxSurface({c.low, -0.2, -0.2}, {c.high, 1.2, 1.2}),
+                isMesh ? mesh(dentedBoxSurface({c.low, -0.2, -0.2}, {c.high, 1.2, 1.2}),
                               fmt::format("beyond{}", c.low))
                        : R"({"shape":"block",)" + range + "}";
             Scene scene = dustOf(
@@ -285,7 +308,7 @@ TEST(Meshes, PushAsOtherSolidsDo) {
     const Vec3d block = gainedBy(
         std::string(R"({"shape":"block","min":[0.2,0.2,0.2],"max":[0.4,0.8,0.8])") + motion + "}");
     const Vec3d same =
-        gainedBy(mesh(boxSurface({0.2, 0.2, 0.2}, {0.4, 0.8, 0.8}), "pusher", motion));
+        gainedBy(mesh(dentedBoxSurface({0.2, 0.2, 0.2}, {0.4, 0.8, 0.8}), "pusher", motion));
     EXPECT_NEAR(same.x / block.x, 1, 0.01);
     EXPECT_NEAR(same.z / block.z, 1, 0.03);
 }

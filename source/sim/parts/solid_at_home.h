@@ -36,14 +36,53 @@ inline SolidState solidAtHome(const Scene& scene, const Solid& solid) {
     return s;
 }
 
+// Whether it moves and turns in planes across this axis only.
+inline bool staysAlong(const Solid& solid, int axis) {
+    bool turns = solid.spin != 0 || solid.turn != 0, leaves = solid.velocity[axis] != 0;
+    for (const Keyframe& key : solid.keyframes)
+        turns = turns || key.turn != 0 || key.spin != 0,
+        leaves = leaves || key.offset[axis] != 0 || key.velocity[axis] != 0;
+    return !solid.floats() && !leaves && (!turns || int(solid.spinAxis) == axis);
+}
+
+// A mesh that ends at a side of the domain goes on beyond it as it is a spacing before: what fluid
+// reaches there is its flank. The edge between the two is round in the field, and in the corner
+// that this left fluid crept into the mesh, whose nearest way out led through its end.
+inline void goOnBeyondWalls(const Scene& scene, const Solid& solid, const Convex& shape,
+                            DistanceField& field) {
+    const double dx = scene.simulation.spacing, near = 0.25 * dx;
+    const size_t stride[3] = {1, size_t(field.nodes.x),
+                              size_t(field.nodes.x) * size_t(field.nodes.y)};
+    const int count[3] = {field.nodes.x, field.nodes.y, field.nodes.z};
+    const Vec3d half = halfExtent(solid), low = shape.middle - half - toDouble(scene.domain.min),
+                high = shape.middle + half - toDouble(scene.domain.min);
+    for (int k = 0; k < 3; ++k) {
+        const bool starts = low[k] < near && low[k] > -dx,
+                   ends = std::abs(high[k] - scene.domain.size()[k]) < dx &&
+                          high[k] > scene.domain.size()[k] - near;
+        if (!staysAlong(solid, k) || (scene.domain.periodic(k) && !(starts && ends))) continue;
+        const double depth = std::min(dx, 0.5 * half[k]),
+                     inside = (half[k] - depth) / (shape.scale * field.spacing),
+                     middle = 0.5 * (count[k] - 1);
+        const int first = int(std::ceil(middle - inside)), last = int(std::floor(middle + inside));
+        for (size_t node = 0; node < field.distances.size(); ++node) {
+            const int at = int(node / stride[k]) % count[k],
+                      to = std::clamp(at, starts ? first : at, ends ? last : at);
+            field.distances[node] =
+                field.distances[node + size_t(to) * stride[k] - size_t(at) * stride[k]];
+        }
+    }
+}
+
 // Of all meshes, one after the other, the distances from their surfaces.
 inline std::vector<real> fieldsOf(const Scene& scene, std::vector<SolidState>& states) {
     std::vector<real> all;
     for (size_t k = 0; k < states.size(); ++k) {
         const Convex shape = convexOf(scene.solids[k], scene.simulation.dimensions);
         if (!shape.mesh) continue;
-        const DistanceField field =
+        DistanceField field =
             shape.mesh->field(shape.mesh->fieldSpacing(scene.simulation.spacing / shape.scale));
+        goOnBeyondWalls(scene, scene.solids[k], shape, field);
         for (float distance : field.distances) all.push_back(real(shape.scale * double(distance)));
         states[k].nodes = field.nodes;
         states[k].fieldLow = toReal(shape.scale * field.low),

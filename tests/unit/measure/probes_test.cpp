@@ -263,8 +263,8 @@ std::vector<Hidden> solidsOverProbes(const std::string& mesh) {
 
 // Every shape, standing, moved, turned and floating, against points that are known to be in or out.
 TEST(Probes, SayThatTheyAreInASolid) {
-    const std::string mesh =
-        boxSurface({0.1, 0.1, 0.1}, {0.3, 0.3, 0.4}).write(::testing::TempDir() + "hiding.obj");
+    const std::string mesh = dentedBoxSurface({0.1, 0.1, 0.1}, {0.3, 0.3, 0.4})
+                                 .write(::testing::TempDir() + "hiding.obj");
     std::string probes = "[";
     std::vector<Vec3> points;
     for (int i = 0; i < 125; ++i) {

@@ -319,7 +319,7 @@ TEST(Meshes, HaveParticlesInLayers) {
     Scene scene;
     scene.simulation.spacing = 0.02f;
     scene.domain.max = {1, 1, 1};
-    Solid box = solidOf(boxSurface({0.2, 0.2, 0.2}, {0.6, 0.5, 0.6})
+    Solid box = solidOf(dentedBoxSurface({0.2, 0.2, 0.2}, {0.6, 0.5, 0.6})
                             .write(testing::TempDir() + "/layers.obj")),
           block;
     block.min = {0.2f, 0.2f, 0.2f}, block.max = {0.6f, 0.5f, 0.6f};

@@ -183,7 +183,7 @@ TEST(SourceChecks, RefuseWhatCannotBe) {
         {{R"(sources=[{"velocities":[[0,-1]]}])"}, "out of range"},
         {{file(both)}, "one column"},
         {{file(back)}, "put times in order"},
-        {{file(negative)}, "below 0"},
+        {{file(negative)}, "out of range"},
     };
     for (const Case& c : cases) try {
             const Scene s = sceneWith(c.knobs);

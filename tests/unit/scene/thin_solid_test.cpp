@@ -50,7 +50,7 @@ TEST(ThinSolid, ArePlatesAndShellsWhoseFacesShareParticles) {
     // Fluid feels its way around rods and small pieces.
     EXPECT_EQ(thinness(sceneOf(3), blockOf({0.3f, 0.3f, 0.3f}, {0.8f, 0.32f, 0.32f})), 0);
     EXPECT_EQ(thinness(sceneOf(2), blockOf({0.3f, 0.3f, 0}, {0.32f, 0.32f, 1})), 0);
-    const Surface sheet = boxSurface({0.2, 0.2, 0.2}, {0.8, 0.204, 0.8});
+    const Surface sheet = dentedBoxSurface({0.2, 0.2, 0.2}, {0.8, 0.204, 0.8});
     EXPECT_NEAR(thinness(sceneOf(3), meshOf(sheet, "sheet.obj")), 0.004, 1e-6);
     EXPECT_EQ(thinness(sceneOf(3), meshOf(sphereSurface({0.5, 0.5, 0.5}, 0.2, 2), "b.obj")), 0);
 }
@@ -65,7 +65,7 @@ TEST(ThinSolid, EachSideHasAWallOfItsOwn) {
                 const double end = 0.4 + spacings * Dx;
                 const Scene scene = sceneOf(dimensions);
                 const Solid plate =
-                    mesh ? meshOf(boxSurface({0.4, 0.2, 0.2}, {end, 0.8, 0.8}), "plate.obj")
+                    mesh ? meshOf(dentedBoxSurface({0.4, 0.2, 0.2}, {end, 0.8, 0.8}), "plate.obj")
                          : blockOf({0.4f, 0.2f, 0.2f}, {float(end), 0.8f, 0.8f});
                 const SolidSample sides = sampleSides(scene, plate);
                 for (const double sign : {-1.0, 1.0}) {

@@ -101,8 +101,8 @@ TEST(LineOfSight, NoWayLeadsAroundWhereAPlateStandsOnSomething) {
 
 // Deeper than their grace.
 TEST(LineOfSight, OtherThinSolidsHideWhatIsBehindThem) {
-    const std::string mesh =
-        boxSurface({0.495, 0.4, 0.4}, {0.505, 0.6, 0.6}).write(testing::TempDir() + "/hiding.obj");
+    const std::string mesh = dentedBoxSurface({0.495, 0.4, 0.4}, {0.505, 0.6, 0.6})
+                                 .write(testing::TempDir() + "/hiding.obj");
     for (const std::string& solid :
          {std::string(R"({"shape":"cylinder","axis":"x","center":[0.5,0.5,0.5],"radius":0.1,
                           "height":0.01})"),

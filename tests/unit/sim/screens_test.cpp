@@ -28,8 +28,9 @@ Scene sceneWith(const std::string& solids, int dimensions, const char* formulati
 }
 
 std::string meshPlate() {
-    const std::string path =
-        boxSurface({0.3, 0, 0.1}, {0.32, 0.5, 0.5}).write(testing::TempDir() + "/screen.obj");
+    const std::string path = several({boxSurface({0.3, 0, 0.1}, {0.33, 0.5, 0.3}),
+                                      boxSurface({0.3, 0, 0.3}, {0.33, 0.45, 0.5})})
+                                 .write(testing::TempDir() + "/screen.obj");
     return R"([{"shape":"mesh","path":")" + path + "\"}]";
 }
 
