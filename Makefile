@@ -79,9 +79,15 @@ library: configure
 gpu-check: $(if $(BUNDLE),,build)
 	python3 tests/cuda/gpu_check.py $(or $(BUNDLE),$(BUILD)) $(ARGS)
 
-# The programs that gpu-check needs and their libraries, in one folder that runs on other machines.
-gpu-bundle: build
-	tests/cuda/bundle.sh $(BUILD) $(or $(BUNDLE),$(BUILD)-bundle)
+# The programs that gpu-check needs and their libraries, in one folder and one archive that run on other machines with an
+# H100 or H200 (sm_90; BUNDLE_ARCHITECTURES for others). The window and what it drags in stay at home.
+BUNDLE_ARCHITECTURES ?= 90
+gpu-bundle: install
+	@test -f build-gpu/build.ninja || cmake -S . -B build-gpu -G Ninja --log-level=WARNING -DSPINDRIFT_WINDOW=OFF \
+		"-DSPINDRIFT_CUDA_ARCHITECTURES=$(BUNDLE_ARCHITECTURES)" '-DCMAKE_BUILD_RPATH=$$ORIGIN/lib' \
+		-DCMAKE_EXE_LINKER_FLAGS=-Wl,--disable-new-dtags $(CMAKE_ARGS)
+	@cmake --build build-gpu --target spindrift unit_tests cuda_tests cuda_sort_bench
+	tests/cuda/bundle.sh build-gpu $(or $(BUNDLE),build-gpu/bundle)
 
 # import spindrift; PREFIX=/usr/local installs it there, else: PYTHONPATH=build/python python3
 python: configure
@@ -116,4 +122,4 @@ install:
 	@third_party/install.sh
 
 clean:
-	rm -rf build build-sanitize build-release build-fuzz
+	rm -rf build build-sanitize build-release build-gpu build-fuzz

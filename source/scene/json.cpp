@@ -15,12 +15,28 @@ namespace {
 // Files beyond this are no scenes (a device, a video): refused before memory is spent on them.
 constexpr size_t LargestFile = 16 << 20;
 
+// What scenes are made of, opened or dropped in a scene's place.
+std::string usedAs(const std::string& file) {
+    std::string kind = std::filesystem::path(file).extension().string();
+    for (char& c : kind) c = char(std::tolower(static_cast<unsigned char>(c)));
+    for (const char* mesh : {".obj", ".stl", ".ply", ".gltf", ".glb"})
+        if (kind == mesh)
+            return R"(is a mesh; a scene names it, {"shape": "mesh", "path": ...}, in solids or )"
+                   "fluid.bodies";
+    for (const char* particles : {".csv", ".h5", ".hdf5"})
+        if (kind == particles)
+            return R"(is no scene; one takes its particles, {"shape": "file", "path": ...}, in )"
+                   "fluid.bodies";
+    return "";
+}
+
 std::string readText(const std::string& file) {
-    const auto refuse = [&](const char* why) {
+    const auto refuse = [&](const std::string& why) {
         throw Error(Failure::Scene, fmt::format("{}: {}", file, why));
     };
     if (!std::filesystem::exists(file))
         refuse("no such file; check the path, or name a shipped scene");
+    if (const std::string use = usedAs(file); !use.empty()) refuse(use);
     if (std::filesystem::is_directory(file)) refuse("is a folder; name a scene file in it");
     std::ifstream stream(file, std::ios::binary);
     if (!stream) refuse("can't be opened; check its permissions");

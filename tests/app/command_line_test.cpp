@@ -49,6 +49,12 @@ TEST_F(CommandLine, MistakesInTheScene) {
     expectMistake("nowhere.json", Exit::Scene, "nowhere.json: no such scene file");
     expectMistake("pool_dorp", Exit::Scene, "did you mean pool_drop?");
     expectMistake(".", Exit::Scene, "is a folder");
+    for (const char* kind : {"obj", "STL", "ply", "gltf", "glb"})
+        expectMistake(write(std::string("part.") + kind, "v 0 0 0"), Exit::Scene,
+                      std::string("part.") + kind + ": is a mesh; a scene names it");
+    for (const char* kind : {"csv", "h5", "hdf5"})
+        expectMistake(write(std::string("cloud.") + kind, "x,y,z"), Exit::Scene,
+                      std::string("cloud.") + kind + ": is no scene; one takes its particles");
     expectMistake(write("a.json", "{\"version\": 2,\n \"fluid\": {]}") + " --headless", Exit::Scene,
                   "a.json: line 2, column 12: not valid JSON");
     expectMistake(write("b.json", R"({"version": 2, "fluid": {"gmama": 7}})"), Exit::Scene,

@@ -41,9 +41,6 @@ class Checks:
         self.rows = []          # {"name", "outcome": passed | failed | skipped, "detail"}
         self.environment = dict(os.environ, SPINDRIFT_CONFIGS=f"{ROOT}/configs", SPINDRIFT_SHADERS=f"{ROOT}/shaders",
                                 OMP_WAIT_POLICY="passive")
-        libraries = os.path.join(self.build, "lib")
-        if os.path.isdir(libraries):
-            self.environment["LD_LIBRARY_PATH"] = libraries + ":" + os.environ.get("LD_LIBRARY_PATH", "")
         code, text = self.run(["cuda_sort_bench", "1000"], limit=120)
         if code not in (0, NO_DEVICE):
             sys.exit(f"gpu_check.py: the programs of {self.build} don't run here: {text.strip()}")
@@ -166,6 +163,12 @@ def first_line(command):
         return "unknown"
 
 
+def commit_of(build):
+    """Of the sources that a bundle was built from, else of this checkout."""
+    known = os.path.join(build, "commit")
+    return first_line(["cat", known] if os.path.exists(known) else ["git", "describe", "--always", "--dirty"])
+
+
 def table(rows):
     if not rows:
         return "none\n"
@@ -233,7 +236,7 @@ def run_errors(checks):
 def write(checks, arguments, bench, sorts, kernels):
     result = {
         "date": datetime.date.today().isoformat(),
-        "commit": first_line(["git", "describe", "--always", "--dirty"]),
+        "commit": commit_of(checks.build),
         "gpu": first_line(["nvidia-smi", "--query-gpu=name,memory.total", "--format=csv,noheader"]),
         "driver": first_line(["nvidia-smi", "--query-gpu=driver_version", "--format=csv,noheader"]),
         "checks": checks.rows, "bench": bench, "sort": sorts, "kernels": kernels,
