@@ -88,7 +88,7 @@ int64_t History::stepsToNext(int64_t steps) const {
 
 void History::add(RunState state, const Measurement& m, const Scene& asked, const Scene& inForce,
                   double cost) {
-    passed_ = 0, cost_ = cost;
+    passed_ = 0, cost_ = keptAt_.empty() ? 0 : cost;  // the first time all takes longer
     const int64_t steps = state.clock.steps;
     const auto place = std::lower_bound(keptAt_.begin(), keptAt_.end(), steps);
     if (place == keptAt_.end() || *place != steps) keptAt_.insert(place, steps);

@@ -2,6 +2,7 @@
 #include "app/window/panel.h"
 
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include <fmt/format.h>
 
@@ -39,11 +40,12 @@ void showNotes(const Ui& ui) {
     if (notesOf(ui).empty()) return;
     // Over the panel too where the picture is too narrow.
     const float edge = margin * ui.scale, right = float(ui.area.x + ui.area.width) - edge,
-                least = 24 * ImGui::GetFontSize(),
+                least = 16 * ImGui::GetFontSize(),
                 left = std::max(std::min(float(ui.area.x) + edge, right - least), edge);
     ImGui::SetNextWindowPos({left, edge});
     ImGui::SetNextWindowSizeConstraints({0, 0}, {right - left, float(ui.area.height) - 2 * edge});
     ImGui::Begin("notes", nullptr, noteWindow);
+    ImGui::BringWindowToDisplayFront(ImGui::GetCurrentWindow());
     ImGui::PushTextWrapPos(right - left - 2 * edge);
     const std::string standing = standstillOf(ui), recorded = recordingOf(ui), said = messageOf(ui);
     if (!recorded.empty()) {

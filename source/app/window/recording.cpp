@@ -33,8 +33,12 @@ std::string fileStem(const std::string& sceneName) {
     std::string stem;
     for (const char c : sceneName) {
         const bool isPlain = std::isalnum(static_cast<unsigned char>(c)) || (c & 0x80) || c == '-';
-        stem += isPlain ? c : '_';
+        if (isPlain)
+            stem += c;
+        else if (!stem.empty() && stem.back() != '_')
+            stem += '_';
     }
+    while (stem.ends_with('_')) stem.pop_back();
     return stem.empty() ? "run" : stem.substr(0, 100);
 }
 

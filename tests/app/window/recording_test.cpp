@@ -68,7 +68,7 @@ struct Recordings : testing::Test {
 
 TEST_F(Recordings, FollowTheRunsTime) {
     Recording recording(scene, 0, 4, 2, folder.string());
-    EXPECT_EQ(fs::path(recording.film()).filename(), "a_test___of_names-001.mp4");
+    EXPECT_EQ(fs::path(recording.film()).filename(), "a_test_of_names-001.mp4");
     // 60 pictures a second: 0, 1/60, ...; one for each even where the run has gone farther.
     follow(recording, {0, 0.005, 0.012, 0.018, 0.02, 0.031, 0.1});
     EXPECT_DOUBLE_EQ(recording.seconds(), 7 / 60.0);
@@ -130,7 +130,7 @@ TEST_F(Recordings, SayHowToGetFfmpegAndLeaveNothingBehind) {
 
 TEST(FileStem, IsAFileName) {
     EXPECT_EQ(fileStem("dam break"), "dam_break");
-    EXPECT_EQ(fileStem("../x.y"), "___x_y");
+    EXPECT_EQ(fileStem("../x.y, "), "x_y");
     EXPECT_EQ(fileStem(""), "run");
     EXPECT_EQ(fileStem("Stra\xc3\x9f"
                        "e 2"),
