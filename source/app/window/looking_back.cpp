@@ -10,14 +10,15 @@
 
 namespace spindrift {
 
-// The run goes on from what is kept, so that it has the same bits when it goes on from there again.
+// The run goes on from what is kept, so that it has the same bits when it goes on from there again;
+// not with local steps, because that would wake what rests.
 std::function<void(Simulation&)> Player::keeping() {
     kept_ = std::make_shared<Kept>();
     kept_->measurement = measurement_;
-    return [kept = kept_](Simulation& simulation) {
+    return [kept = kept_, goesOn = inForce_.time.mode != TimeMode::Local](Simulation& simulation) {
         const double begin = wallTime();
         kept->state = simulation.state();
-        simulation.restart(kept->state);
+        if (goesOn) simulation.restart(kept->state);
         simulation.wait();
         kept->seconds = wallTime() - begin;
     };

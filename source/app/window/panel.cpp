@@ -363,11 +363,16 @@ void question(Ui& ui) {
     ImGui::End();
 }
 
-// At the upper right, as wide as its rows are, and never narrower than `least`, px at scale 1.
+// At the upper right, below notes that reach so far, as wide as its rows are, and never narrower
+// than `least`, px at scale 1.
 void beginPicked(const Ui& ui, const char* name, float least) {
-    const float edge = margin * ui.scale;
-    ImGui::SetNextWindowPos({float(ui.area.x + ui.area.width) - edge, edge}, ImGuiCond_Always,
-                            {1, 0});
+    const float edge = margin * ui.scale, right = float(ui.area.x + ui.area.width) - edge;
+    const ImGuiWindow *before = ImGui::FindWindowByName(name),
+                      *notes = ImGui::FindWindowByName("notes");
+    const float left = right - (before ? before->Size.x : least * ui.scale);
+    const bool isBelow = notes && notes->Active && notes->Pos.x + notes->Size.x > left;
+    ImGui::SetNextWindowPos({right, isBelow ? notes->Pos.y + notes->Size.y + edge / 2 : edge},
+                            ImGuiCond_Always, {1, 0});
     ImGui::SetNextWindowSizeConstraints({least * ui.scale, 0}, {1e4f, 1e4f});
     ImGui::Begin(name, nullptr, noteWindow);
 }

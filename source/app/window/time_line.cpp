@@ -62,7 +62,7 @@ void line(Ui& ui) {
                  begin = history.empty() ? now : history[0].time();
     const std::string first = fmt::format("{:.3g} s", begin), last = fmt::format("{:.4g} s", now);
     const float gap = ImGui::GetStyle().ItemSpacing.x,
-                room = ImGui::CalcTextSize("0.0000 s").x;  // the same whatever they are
+                room = ImGui::CalcTextSize("0.000e-00 s").x;  // the same whatever they are
     ImGui::TextDisabled("%s", first.c_str());
     ImGui::SameLine(ImGui::GetStyle().WindowPadding.x + room + gap);
     const ImVec2 corner = ImGui::GetCursorScreenPos();
