@@ -38,8 +38,8 @@ struct Recordings : testing::Test {
     static Image shade(uint8_t value) { return {4, 2, std::vector<uint8_t>(24, value)}; }
     // The run is at these times, s, shown at this share of real time.
     void follow(Recording& recording, std::vector<double> times, double speed = 1) {
+        Measurement m = simulation->measure();
         for (const double time : times) {
-            Measurement m = simulation->measure();
             m.time = time;
             recording.follow(*simulation, m, {});
             if (recording.wantsPicture()) recording.add(shade(uint8_t(1000 * time)), speed);
