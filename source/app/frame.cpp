@@ -108,10 +108,10 @@ void keepCamera(Scene& scene, const OrbitCamera& camera) {
 
 Frame::Frame(int width, int height, int samples) : renderer_(width, height, samples) {}
 
-void Frame::update(Simulation& simulation, const Scene& scene) {
+void Frame::update(Simulation& simulation, const Scene& scene, bool looksBack) {
     fluidCount_ = simulation.fluidCount();
-    const double time = simulation.clock().time;
-    if (std::exchange(fresh_, false)) begin(scene), begin_ = time;
+    now_ = simulation.clock().time;
+    if (std::exchange(fresh_, false)) begin(scene), begin_ = now_;
     wallCount_ = scene.view.showWalls        ? simulation.wallCount()
                  : scene.view.solidParticles ? simulation.solidParticleCount()
                                              : 0;
@@ -125,10 +125,10 @@ void Frame::update(Simulation& simulation, const Scene& scene) {
     seen_ = write(simulation, scene.view.colorBy);
     if (fluidCount_ == 0 || seen_.max < seen_.min)
         seen_ = {0, 0};  // there is nothing to see yet
-    else
-        run_[scene.view.colorBy].add(time, seen_);
+    else if (!looksBack)
+        run_[scene.view.colorBy].add(now_, seen_);
     lookInside(simulation, scene);
-    followPath(simulation, scene);
+    if (!looksBack) followPath(simulation, scene);
 }
 
 void Frame::followPath(Simulation& simulation, const Scene& scene) {
@@ -182,6 +182,19 @@ Range Frame::write(Simulation& simulation, ColorBy by) {
     }
 }
 
+std::vector<Vec3> Frame::shownFluid(const Scene& scene) const {
+    const Threshold& t = scene.view.threshold;
+    const bool hides = t.on && isNumber(scene.view.colorBy);
+    const ClipBox box = clipBox(scene);
+    std::vector<Vec3> shown;
+    for (const Vertex& v : vertices_.read(fluidCount_)) {
+        const Vec3 place{v.x, v.y, v.z};
+        if (box.holds(place) && (!hides || (v.value >= t.min && v.value <= t.max)))
+            shown.push_back(place);
+    }
+    return shown;
+}
+
 Range Frame::range(const View& view) const {
     const auto run = run_.find(view.colorBy);
     Range r = view.range == RangeMode::Frame || run == run_.end() ? seen_ : run->second.range();
@@ -202,7 +215,8 @@ std::string Frame::rangeNote(const View& view) const {
     if (view.range == RangeMode::Fixed) return "fixed";
     if (view.range == RangeMode::Frame) return "per frame";
     const auto run = run_.find(view.colorBy);
-    if (run == run_.end() || run->second.since() <= begin_) return "over the run";
+    if (run == run_.end()) return "per frame";  // the run is looked back at
+    if (run->second.since() <= begin_) return "over the run";
     return fmt::format("since {:.3g} s", run->second.since());  // it was not looked at before
 }
 
@@ -292,7 +306,7 @@ void Frame::setInside(DrawSettings& settings, const Scene& scene) {
     settings.fluid = !slice_ || view.slice.fluid;
     settings.contourStep =
         contourStep(view, settings.rangeMin, settings.rangeMax, settings.logarithmic);
-    for (size_t i = 1; i < path_.size(); ++i)
+    for (size_t i = 1; pathOf_ == view.pathOf && i < path_.size() && path_[i].time <= now_; ++i)
         if (!goesAround(scene.domain, path_[i].at - path_[i - 1].at))
             settings.path.push_back({path_[i - 1].at, path_[i].at});
     for (const CellVelocity& c : arrows_) {

@@ -26,8 +26,8 @@ public:
     int height() const { return renderer_.height(); }
 
     // Lets the simulation write the vertices that this scene's view asks for, and follows their
-    // range.
-    void update(Simulation&, const Scene&);
+    // range; not where the run is looked back at, whose range and path are known already.
+    void update(Simulation&, const Scene&, bool looksBack = false);
     // Takes note of where the particle of view.path_of is; update() does so too.
     void followPath(Simulation&, const Scene&);
     // A GPU that steps but doesn't draw hands its vertices over by a copy through the host.
@@ -41,6 +41,10 @@ public:
     Image image() const { return renderer_.image(); }
     void blit(int x, int y) const { renderer_.blit(x, y); }
     std::optional<Vec3> surfaceAt(int x, int y) const { return renderer_.surfaceAt(x, y); }
+
+    // Where the fluid is that the last update() wrote and this view shows: within its clip box and
+    // its thresholds, m from the domain's lower corner.
+    std::vector<Vec3> shownFluid(const Scene&) const;
 
     // Values at the ends of the colour table, in the unit of the coloured quantity; one value where
     // all have the same, but for round-off.
@@ -59,7 +63,7 @@ private:
     int fluidCount_ = 0, wallCount_ = 0, objectCount_ = 0;  // in vertices_
     Range seen_{};                                          // of the last update
     std::map<ColorBy, RunRange> run_;  // of all since restart(), by what was shown
-    double begin_ = 0;                 // s, the first update's time
+    double begin_ = 0, now_ = 0;       // s, the first and the last update's time
     std::vector<ShapePose> solids_;
     std::optional<SliceField> slice_;   // if the last update's view had one
     std::vector<CellVelocity> arrows_;  // likewise

@@ -365,6 +365,7 @@ struct View {
     Up up = Up::Auto;         // the direction that is up in pictures
     float particleScale = 1;  // drawn diameter / spacing
     float speed = 1;          // simulated / wall time that the window aims at
+    float history = 512;      // MB of moments that the window can go back to, 0 = none
     Stirrer stir;
     Camera camera;
 };

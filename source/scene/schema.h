@@ -328,6 +328,10 @@ template <class S, class Visitor> void visitPicture(S& s, Visitor&& visit) {
     visit("view.speed", v.speed,
           Knob{"x real time", 0.01f, 10,
                "how fast the window plays: simulated seconds for one of the clock's"});
+    visit("view.history", v.history,
+          Knob{"MB", 0, 1e6f,
+               "memory for moments of the run that the window can go back to, evenly over all of "
+               "it; 0 = none"});
     visit("view.path_of", v.pathOf,
           Knob{"", -1, 1e9f,
                "number of a fluid particle whose path is drawn, as of the first picture with it; "

@@ -173,5 +173,61 @@ TEST(Path, EndsWhereItsParticleLeaves) {
     EXPECT_EQ(amber(run.picture(path)), length);
 }
 
+// A moment of before shows what was known then where it was, by the colours of the whole run; and
+// now is as it was.
+TEST(LookingBack, LeavesRangeAndPathAsTheyAre) {
+    const Scene scene = with(collapse(), {"view.path_of=700"});
+    Watched run(scene);
+    std::vector<RunState> states;
+    std::vector<int> lengths;
+    for (int k = 0; k < 10; ++k) {
+        run.simulation->step(40);
+        states.push_back(run.simulation->state());
+        lengths.push_back(amber(run.picture(scene)));
+    }
+    const auto lookAt = [&](size_t moment) {
+        run.simulation->restart(states[moment]);
+        run.frame.update(*run.simulation, scene, true);
+        run.frame.draw(scene);
+        return run.frame.image();
+    };
+    const Range range = run.frame.range(scene.view);
+    const Image now = lookAt(9), before = lookAt(3);
+    EXPECT_EQ(run.frame.range(scene.view).max, range.max) << "the colours compare";
+    EXPECT_LT(amber(before), amber(now));
+    EXPECT_NEAR(amber(before), lengths[3], 6) << "the path ends where its particle was";
+    EXPECT_EQ(lookAt(9), now);
+    // The run goes on from there: its path goes another way.
+    lookAt(3);
+    run.simulation->step(1);
+    EXPECT_NEAR(amber(run.picture(scene)), lengths[3], 6);
+    EXPECT_LT(amber(lookAt(9)), amber(now)) << "what came after is forgotten";
+}
+
+TEST(ShownFluid, IsWithinThresholdsAndClipBox) {
+    const Scene scene = collapse();
+    Watched run(scene);
+    run.simulation->step(100);
+    const auto shown = [&](const std::vector<std::string>& knobs) {
+        const Scene view = with(scene, knobs);
+        run.frame.update(*run.simulation, view);
+        return run.frame.shownFluid(view).size();
+    };
+    size_t fast = 0, low = 0;
+    for (const Particle& p : run.simulation->particles()) {
+        const bool isFast = length(p.velocity) >= 0.5, isLow = p.position.y <= 0.25;
+        fast += isFast, low += isLow;
+    }
+    const size_t all = size_t(run.simulation->fluidCount());
+    ASSERT_GT(fast, 10u);
+    ASSERT_LT(fast, all);
+    ASSERT_LT(low, all);
+    EXPECT_EQ(shown({}), all);
+    EXPECT_EQ(shown({"view.threshold.on=true", "view.threshold.min=0.5", "view.threshold.max=100"}),
+              fast);
+    const float height = scene.domain.max.y - scene.domain.min.y;
+    EXPECT_EQ(shown({"view.clip.max=[1," + std::to_string(0.25f / height) + ",1]"}), low);
+}
+
 }  // namespace
 }  // namespace spindrift

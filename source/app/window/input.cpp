@@ -12,7 +12,11 @@ namespace spindrift {
 
 const std::vector<Control> controls = {
     {"Space", "run, pause"},
-    {"Right", "one step"},
+    {"Right", "one step; looking back, the next moment"},
+    {"Left", "look back, to the moment before"},
+    {"P, L", "play the kept moments, in a loop"},
+    {"Enter", "go on from that moment (Esc: back to now)"},
+    {"V", "record a film and the series, V ends it"},
     {"R", "start again, as it was loaded"},
     {"Left drag", "orbit"},
     {"Middle drag, Shift + left drag", "pan"},
@@ -45,6 +49,12 @@ const std::vector<Control> controls = {
 
 namespace {
 
+// The panel knows that the mouse is over it one picture later.
+bool isOverPicture(const Ui& ui) {
+    return ui.mouseX >= 0 && ui.mouseY >= 0 && ui.mouseX < float(ui.area.width) &&
+           ui.mouseY < float(ui.area.height);
+}
+
 // What is seen under the mouse, or where nothing is, as far away as the camera's target.
 Vec3 underMouse(const Ui& ui, const OrbitCamera& camera) {
     return ui.frame.surfaceAt(int(ui.mouseX), int(ui.mouseY))
@@ -53,6 +63,7 @@ Vec3 underMouse(const Ui& ui, const OrbitCamera& camera) {
 }
 
 void startStir(Ui& ui) {
+    if (ui.player.looksBack()) return ui.say("nothing moves while you look back");
     ui.stirCenter = ui.stirBefore = underMouse(ui, ui.camera());
     ui.drag = Drag::Stir;  // until it turns out that an obstacle is there
     ui.grabWanted = true;
@@ -208,6 +219,32 @@ bool pressViewKey(Ui& ui, SDL_Keycode key) {
     }
 }
 
+// Keys that run, step and look back; whether this is one.
+bool pressTimeKey(Ui& ui, SDL_Keycode key) {
+    switch (key) {
+        case SDLK_SPACE:
+            return ui.toggleRun(), true;
+        case SDLK_RIGHT:
+            ui.player.looksBack() ? ui.lookOn(1) : ui.player.stepOnce();
+            return true;
+        case SDLK_LEFT:
+            return ui.lookOn(-1), true;
+        case SDLK_p:
+            return ui.playMoments(), true;
+        case SDLK_l:
+            ui.replay.loops = !ui.replay.loops;
+            ui.say(ui.replay.loops ? "kept moments play in a loop" : "kept moments play once");
+            return true;
+        case SDLK_RETURN:
+        case SDLK_KP_ENTER:
+            return ui.goOnFromHere(), true;
+        case SDLK_v:
+            return ui.toggleRecording(), true;
+        default:
+            return false;
+    }
+}
+
 }  // namespace
 
 void pressKey(Ui& ui, SDL_Keycode key) {
@@ -215,13 +252,8 @@ void pressKey(Ui& ui, SDL_Keycode key) {
     if (key == SDLK_MINUS || key == SDLK_KP_MINUS) return changeSpeed(ui, 0.5f);
     if (key == SDLK_PLUS || key == SDLK_EQUALS || key == SDLK_KP_PLUS) return changeSpeed(ui, 2);
     if (pressViewKey(ui, key)) return;
+    if (pressTimeKey(ui, key)) return;
     switch (key) {
-        case SDLK_SPACE:
-            ui.toggleRun();
-            break;
-        case SDLK_RIGHT:
-            ui.player.stepOnce();
-            break;
         case SDLK_r:
             ui.reset();
             break;
@@ -291,12 +323,13 @@ void handleEvent(Ui& ui, const SDL_Event& event) {
         case SDL_KEYDOWN:
             ui.held = SDL_Keymod(event.key.keysym.mod);
             // A key that is held repeats single steps only.
-            if (!io.WantTextInput && (!event.key.repeat || event.key.keysym.sym == SDLK_RIGHT))
+            if (!io.WantTextInput && (!event.key.repeat || event.key.keysym.sym == SDLK_RIGHT ||
+                                      event.key.keysym.sym == SDLK_LEFT))
                 pressKey(ui, event.key.keysym.sym);
             break;
         case SDL_MOUSEBUTTONDOWN:
             moveTo(event.button.x, event.button.y);
-            if (!io.WantCaptureMouse) pressButton(ui, event.button);
+            if (!io.WantCaptureMouse && isOverPicture(ui)) pressButton(ui, event.button);
             break;
         case SDL_MOUSEBUTTONUP:
             releaseButton(ui);
@@ -311,7 +344,7 @@ void handleEvent(Ui& ui, const SDL_Event& event) {
             break;
         }
         case SDL_MOUSEWHEEL:
-            if (!io.WantCaptureMouse) turnWheel(ui, event.wheel.preciseY);
+            if (!io.WantCaptureMouse && isOverPicture(ui)) turnWheel(ui, event.wheel.preciseY);
             break;
         default:
             break;

@@ -40,6 +40,7 @@ public:
     explicit KnobHistory(const Scene& scene) : settled_(scene) {}
     // Now that no slider is held: all that has changed since the last call is one change.
     void settle(const Scene&);
+    const Scene& settled() const { return settled_; }  // as of the last call
     // Takes the last change back and returns its paths; none when there is nothing left.
     std::vector<std::string> undo(Scene&);
 

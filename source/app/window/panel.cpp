@@ -22,8 +22,7 @@ namespace spindrift {
 
 namespace {
 
-constexpr float width = 340, margin = 12;  // px at scale 1
-ImVec4 red() { return isLight() ? ImVec4{0.75f, 0.12f, 0.08f, 1} : ImVec4{1.0f, 0.52f, 0.48f, 1}; }
+constexpr float width = 340;  // px at scale 1
 
 template <class... T> void text(fmt::format_string<T...> format, T&&... values) {
     ImGui::TextUnformatted(fmt::format(format, std::forward<T>(values)...).c_str());
@@ -108,12 +107,17 @@ void sceneList(Ui& ui) {
 void transport(Ui& ui) {
     const float gap = ImGui::GetStyle().ItemSpacing.x;
     const ImVec2 third{(ImGui::GetContentRegionAvail().x - 2 * gap) / 3, 0};
+    ImGui::BeginDisabled(ui.player.looksBack());
     if (ImGui::Button(ui.player.running ? "Pause" : "Run", third)) ui.toggleRun();
     ImGui::SameLine();
     if (ImGui::Button("Step", third)) ui.player.stepOnce();
+    ImGui::EndDisabled();
     ImGui::SameLine();
     if (ImGui::Button("Reset", third)) ui.reset();
-    if (ImGui::Button("Save checkpoint", {-1, 0})) ui.saveCheckpoint();
+    const ImVec2 half{(ImGui::GetContentRegionAvail().x - gap) / 2, 0};
+    if (ImGui::Button("Save checkpoint", half)) ui.saveCheckpoint();
+    ImGui::SameLine();
+    if (ImGui::Button(ui.recording ? "End recording" : "Record", half)) ui.toggleRecording();
 }
 
 void rememberPopup(Ui& ui) {
@@ -128,7 +132,9 @@ void speed(Ui& ui) {
     float& wanted = ui.player.scene.view.speed;
     const bool late = ui.player.running && factor < 0.9 * double(wanted);
     ImGui::SetWindowFontScale(1.5f);
-    const std::string shown = ui.player.running ? fmt::format("{:.2g} x", factor) : "paused";
+    const std::string shown = ui.player.running       ? fmt::format("{:.2g} x", factor)
+                              : ui.player.looksBack() ? "past"
+                                                      : "paused";
     ImGui::TextColored(
         late || !ui.player.running ? amber() : ImGui::GetStyle().Colors[ImGuiCol_Text], "%s",
         shown.c_str());
@@ -170,7 +176,7 @@ void status(Ui& ui) {
 
 // What a run that can't keep up spends its time on, and what would make it quicker.
 void slowness(Ui& ui) {
-    if (!ui.isSlow) return;
+    if (!ui.isSlow || ui.player.looksBack()) return;
     const Measurement& m = ui.player.measurement();
     double each = 0;  // ms, a step
     for (const PassTime& t : ui.times)
@@ -197,14 +203,16 @@ void passTimes(const Ui& ui) {
 }
 
 void curves(Ui& ui) {
-    const History& h = ui.player.history();
-    plot("energy", perDepth("J", h.dimensions).c_str(), h.time,
+    const Curves& h = ui.player.curves();
+    const std::optional<double> shown =
+        ui.player.looksBack() ? std::optional(ui.player.measurement().time) : std::nullopt;
+    plot("energy", perDepth("J", h.dimensions).c_str(), h.time, shown,
          {{"total", h.total, ImGui::GetColorU32(ImGuiCol_Text)},
           {"kinetic", h.kinetic,
            isLight() ? IM_COL32(20, 100, 190, 255) : IM_COL32(96, 180, 255, 255)},
           {"potential", h.potential,
            isLight() ? IM_COL32(190, 110, 0, 255) : IM_COL32(255, 190, 90, 255)}});
-    plot("mean density error", "", h.time,
+    plot("mean density error", "", h.time, shown,
          {{"", h.densityError,
            isLight() ? IM_COL32(20, 130, 60, 255) : IM_COL32(120, 220, 150, 255)}});
     if (ImGui::Button("Save curves as CSV", {-1, 0})) ui.saveCurves();
@@ -251,6 +259,18 @@ void putBackIfRefused(Ui& ui, const View& before) {
     }
 }
 
+// Once its name is whole.
+void tryColorFile(Ui& ui) {
+    const View& view = ui.player.scene.view;
+    const std::string file = view.colorMap == ColorMap::File ? view.colorFile : "";
+    if (ImGui::IsAnyItemActive() || ui.colorFile == file) return;
+    ui.colorFile = file;
+    if (view.colorMap != ColorMap::File) return;
+    try {
+        checkView(ui.player.scene);
+    } catch (const Error& error) { ui.say(error.what(), true); }
+}
+
 void knobs(Ui& ui) {
     Scene& scene = ui.player.scene;
     const auto edited = [&](const char* title, const std::string& group, bool open = false) {
@@ -264,6 +284,7 @@ void knobs(Ui& ui) {
     asked |= edited("Clip box", "view.clip");
     asked |= edited("Thresholds", "view.threshold");
     if (asked) putBackIfRefused(ui, before), ui.stale = ui.rewrite = true;
+    tryColorFile(ui);
     if (edited("Arrows: A", "view.arrows")) ui.stale = ui.rewrite = true;
     if (edited("Stirrer: Ctrl + drag", "view.stir")) ui.stale = true;
     if (edited("Camera", "view.camera")) ui.stale = true;
@@ -276,16 +297,10 @@ void knobs(Ui& ui) {
     if (physics) ui.player.knobsChanged();
 }
 
-constexpr ImGuiWindowFlags fixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
-                                   ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                                   ImGuiWindowFlags_NoNav;
-constexpr ImGuiWindowFlags note =
-    fixed | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing;
-
 void panel(Ui& ui, int windowHeight) {
     ImGui::SetNextWindowPos({0, 0});
-    ImGui::SetNextWindowSize({float(panelWidth(ui)), float(windowHeight)});
-    ImGui::Begin("panel", nullptr, fixed);
+    ImGui::SetNextWindowSize({float(panelWidth(ui)), float(windowHeight - timeLineHeight(ui))});
+    ImGui::Begin("panel", nullptr, fixedWindow);
     sceneList(ui);
     transport(ui);
     ImGui::Spacing();
@@ -319,16 +334,9 @@ void beginBox(const Ui& ui, const char* name) {
         {std::max(std::min(middle, all.x - half), std::min(half, 0.5f * all.x)), 0.5f * all.y},
         ImGuiCond_Always, {0.5f, 0.5f});
     ImGui::SetNextWindowSizeConstraints({0, 0}, all);
-    ImGui::Begin(name, nullptr, note);
+    ImGui::Begin(name, nullptr, noteWindow);
     ImGui::BringWindowToDisplayFront(ImGui::GetCurrentWindow());
 }
-
-// Why the run stands still; "" while it doesn't.
-std::string standstillOf(const Ui& ui) {
-    if (!ui.player.halted.empty()) return ui.player.halted;
-    return ui.player.running ? "" : "paused: Space runs, Right steps once";
-}
-std::string messageOf(const Ui& ui) { return uiTime() < ui.message.until ? ui.message.text : ""; }
 
 void help(const Ui& ui) {
     beginBox(ui, "help");
@@ -340,24 +348,6 @@ void help(const Ui& ui) {
             ImGui::TextUnformatted(control.action);
         }
     ImGui::EndTable();
-    ImGui::End();
-}
-
-void notes(Ui& ui) {
-    if (notesOf(ui).empty()) return;
-    const float edge = margin * ui.scale;
-    ImGui::SetNextWindowPos({float(ui.area.x) + edge, edge});
-    ImGui::SetNextWindowSizeConstraints({0, 0}, {float(ui.area.width) - 2 * edge, 1e4f});
-    ImGui::Begin("notes", nullptr, note);
-    ImGui::PushTextWrapPos(float(ui.area.width) - 4 * edge);
-    const std::string standing = standstillOf(ui), said = messageOf(ui);
-    if (!standing.empty())
-        ImGui::TextColored(ui.player.halted.empty() ? amber() : red(), "%s", standing.c_str());
-    if (!said.empty() && ui.message.error)
-        ImGui::TextColored(red(), "%s", said.c_str());
-    else if (!said.empty())
-        ImGui::TextUnformatted(said.c_str());
-    ImGui::PopTextWrapPos();
     ImGui::End();
 }
 
@@ -373,13 +363,18 @@ void question(Ui& ui) {
     ImGui::End();
 }
 
-// At the upper right, as wide as its rows are, and never narrower than `least`, px at scale 1.
+// At the upper right, below notes that reach so far, as wide as its rows are, and never narrower
+// than `least`, px at scale 1.
 void beginPicked(const Ui& ui, const char* name, float least) {
-    const float edge = margin * ui.scale;
-    ImGui::SetNextWindowPos({float(ui.area.x + ui.area.width) - edge, edge}, ImGuiCond_Always,
-                            {1, 0});
+    const float edge = margin * ui.scale, right = float(ui.area.x + ui.area.width) - edge;
+    const ImGuiWindow *before = ImGui::FindWindowByName(name),
+                      *notes = ImGui::FindWindowByName("notes");
+    const float left = right - (before ? before->Size.x : least * ui.scale);
+    const bool isBelow = notes && notes->Active && notes->Pos.x + notes->Size.x > left;
+    ImGui::SetNextWindowPos({right, isBelow ? notes->Pos.y + notes->Size.y + edge / 2 : edge},
+                            ImGuiCond_Always, {1, 0});
     ImGui::SetNextWindowSizeConstraints({least * ui.scale, 0}, {1e4f, 1e4f});
-    ImGui::Begin(name, nullptr, note);
+    ImGui::Begin(name, nullptr, noteWindow);
 }
 
 void pickedSolid(const Ui& ui) {
@@ -424,11 +419,9 @@ void pickedParticle(Ui& ui) {
 
 int panelWidth(const Ui& ui) { return ui.showPanel ? int(width * ui.scale) : 0; }
 
-std::string notesOf(const Ui& ui) { return standstillOf(ui) + messageOf(ui); }
-
 void showLoading(const Task& task, float x, float y) {
     ImGui::SetNextWindowPos({x, y}, ImGuiCond_Always, {0.5f, 0.5f});
-    ImGui::Begin("loading", nullptr, note);
+    ImGui::Begin("loading", nullptr, noteWindow);
     text("{} ...", task.doing.load());
     ImGui::ProgressBar(float(task.share), {20 * ImGui::GetFontSize(), 0});
     ImGui::TextDisabled("Esc cancels");
@@ -440,7 +433,8 @@ void showPanel(Ui& ui, int windowHeight) {
         panel(ui, windowHeight);
     else
         rememberPopup(ui);
-    notes(ui);
+    showTimeLine(ui, windowHeight);
+    showNotes(ui);
     pickedParticle(ui);
     pickedSolid(ui);
     if (ui.showHelp) help(ui);

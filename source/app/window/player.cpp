@@ -6,7 +6,6 @@
 #include "scene/check.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <utility>
@@ -15,21 +14,16 @@ namespace spindrift {
 
 namespace {
 
-double wallTime() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
-        .count();
-}
-
 // A run that can't keep up forgets what it is late by beyond this, instead of racing to catch up.
 constexpr double longestLag = 0.1;  // s
-constexpr size_t longestHistory = 1024;
+constexpr size_t longestCurve = 1024;
 
 }  // namespace
 
-void History::add(const Measurement& m) {
+void Curves::add(const Measurement& m) {
     if (!time.empty() && (m.time <= time.back() || m.time < time.back() + least_)) return;
     std::vector<float>* curves[] = {&time, &kinetic, &potential, &total, &densityError};
-    if (time.size() >= longestHistory) {
+    if (time.size() >= longestCurve) {
         for (std::vector<float>* curve : curves) {
             for (size_t i = 0; i < curve->size() / 2; ++i) (*curve)[i] = (*curve)[2 * i];
             curve->resize(curve->size() / 2);
@@ -42,7 +36,7 @@ void History::add(const Measurement& m) {
     dimensions = m.dimensions;
 }
 
-void History::dropAfter(double t) {
+void Curves::dropAfter(double t) {
     const auto keep = size_t(std::upper_bound(time.begin(), time.end(), float(t)) - time.begin());
     for (std::vector<float>* curve : {&time, &kinetic, &potential, &total, &densityError})
         curve->resize(keep);
@@ -71,14 +65,16 @@ void Player::begin(Loaded loaded, bool again) {
     origin_ = std::move(loaded.start);
     start_ = state.start;
     measurement_ = stepper_->measurement();
-    history_ = {};
+    curves_ = {};
+    history_.clear();
+    kept_.reset(), shown_.reset();
     for (const CurvePoint& p : origin_.before) {
         Measurement m;
         m.time = p.time, m.kineticEnergy = p.kineticEnergy, m.potentialEnergy = p.potentialEnergy;
         m.densityError = p.densityError;
-        history_.add(m);
+        curves_.add(m);
     }
-    history_.add(measurement_);
+    curves_.add(measurement_);
     validity_ = Validity(scene);
     validity_.look(measurement_);
     changes_.clear();
@@ -86,15 +82,20 @@ void Player::begin(Loaded loaded, bool again) {
     notice = hidden;
     if (!hidden.empty()) std::fprintf(stderr, "spindrift: %s\n", hidden.c_str());
     culprits.clear();
-    lag_ = stepsPerSecond_ = realTimeFactor_ = 0;
-    rateTime_ = inForceSince_ = measurement_.time;
-    rateSteps_ = firstSteps_ = measurement_.steps;
+    firstSteps_ = measurement_.steps;
     savedSteps_ = 0;
-    stepsLeft_ =
-        std::max<int64_t>(scene.compute.steps - measurement_.steps, 0);  // of a checkpoint's run
-    lastProceed_ = rateSince_ = wallTime();
+    beginRates();
     applyWanted_ = underWay_ = stepWanted_ = stirWanted_ = holdWanted_ = collected_ = false;
     ++generation_;
+}
+
+// Of a run that begins at a state.
+void Player::beginRates() {
+    lag_ = stepsPerSecond_ = realTimeFactor_ = 0;
+    rateTime_ = inForceSince_ = measurement_.time;
+    rateSteps_ = measurement_.steps;
+    stepsLeft_ = std::max<int64_t>(scene.compute.steps - measurement_.steps, 0);
+    lastProceed_ = rateSince_ = wallTime();
 }
 
 void Player::load(const std::string& file) {
@@ -120,6 +121,9 @@ bool Player::takeLoaded() {
 }
 
 void Player::goOnWith(Formulation formulation, Backend backend) {
+    if (looksBack())
+        throw Error(Failure::Usage,
+                    "looking back: go on from here (Enter) or return to the present (Esc) first");
     while (stepper_->busy()) stepper_->wait(1);
     const auto with = [&](Scene s) {
         s.simulation.formulation = formulation, s.compute.backend = backend;
@@ -141,14 +145,14 @@ void Player::stepOnce() {
 
 void Player::saveCheckpoint(const std::string& file) {
     while (stepper_->busy()) stepper_->wait(1);
-    const RunState state =
-        culprits.empty() ? stepper_->simulation().state() : stepper_->guard().lastGood();
+    const RunState state = culprits.empty() || looksBack() ? stepper_->simulation().state()
+                                                           : stepper_->guard().lastGood();
     std::vector<CurvePoint> curves;
-    for (size_t i = 0; i < history_.time.size() && history_.time[i] <= float(state.clock.time); ++i)
-        curves.push_back({history_.time[i], history_.kinetic[i], history_.potential[i],
-                          history_.densityError[i]});
+    for (size_t i = 0; i < curves_.time.size() && curves_.time[i] <= float(state.clock.time); ++i)
+        curves.push_back(
+            {curves_.time[i], curves_.kinetic[i], curves_.potential[i], curves_.densityError[i]});
     writeCheckpoint(file, scene, state, curves);
-    savedSteps_ = std::max(state.clock.steps, measurement_.steps);
+    savedSteps_ = std::max({savedSteps_, state.clock.steps, measurement_.steps});
 }
 
 void Player::halt(const std::string& why) {
@@ -169,6 +173,14 @@ bool Player::collect(bool& moved) {
 }
 
 void Player::takeMeasurement() {
+    if (shown_) {
+        try {
+            stepper_->measurement();
+        } catch (const Error& error) { halt(error.what()); }
+        measurement_ = history_[*shown_].measurement;
+        return;
+    }
+    takeKept();
     const double before = measurement_.time;
     const int64_t stepsBefore = measurement_.steps;
     try {
@@ -184,18 +196,24 @@ void Player::takeMeasurement() {
     if (wentBack) {  // rates count what has been gained since
         rateTime_ -= before - measurement_.time, rateSteps_ -= stepsBefore - measurement_.steps;
         inForceSince_ = std::min(inForceSince_, measurement_.time);
-        history_.dropAfter(measurement_.time);
-        validity_.dropAfter(measurement_.time);
+        dropAfter(measurement_.time);
     }
-    history_.add(measurement_);
+    curves_.add(measurement_);
     validity_.look(measurement_);
     if (stepper_->finding() == HealthGuard::Finding::GaveUp) {
         culprits = guard.culprits();
-        halt(guard.said() + ", then press R");
+        halt(guard.said() + ", then press R, or Left to go on from before");
     } else if (!guard.said().empty()) {
         notice = guard.said();
     }
     if (wentBack) takeBackChangesAfter(measurement_.time);
+}
+
+// The run has gone back to this time, s.
+void Player::dropAfter(double time) {
+    curves_.dropAfter(time);
+    validity_.dropAfter(time);
+    history_.dropAfter(time);
 }
 
 // The run has come into trouble: what was changed since the state that it goes on from is to blame.
@@ -217,9 +235,12 @@ void Player::meetRequests() {
     if (applyWanted_ && !changedKnobs(scene, asked_, KnobKind::Physics).empty()) try {
             const Simulation& s = stepper_->simulation();
             checkScene(scene, "panel", ParticleCount{s.fluidCount(), s.wallCount()});
-            changes_.push_back({measurement_.time, std::exchange(asked_, scene)});
-            if (changes_.size() > mostChanges) changes_.erase(changes_.begin());
-            underWay_ = true;
+            const Scene before = std::exchange(asked_, scene);
+            if (!looksBack()) {
+                changes_.push_back({measurement_.time, before});
+                if (changes_.size() > mostChanges) changes_.erase(changes_.begin());
+                underWay_ = true;
+            }
         } catch (const Error& error) {
             copyKnobs(scene, asked_, KnobKind::Physics);
             notice = error.what();
@@ -233,7 +254,7 @@ void Player::meetRequests() {
 }
 
 void Player::followKnobs() {
-    if (!underWay_) return;
+    if (!underWay_ || looksBack()) return;
     inForce_ = towards(asked_, inForce_, start_, measurement_.time - inForceSince_);
     inForceSince_ = measurement_.time;
     stepper_->guard().apply(inForce_);
@@ -242,22 +263,31 @@ void Player::followKnobs() {
 }
 
 void Player::proceed(double budget) {
-    const double now = wallTime();
+    const double now = wallTime(), passed = now - lastProceed_;
     const double speed = scene.view.speed;
-    lag_ = std::min(lag_ + (running ? speed * (now - lastProceed_) : 0), speed * longestLag);
+    lag_ = std::min(lag_ + (running ? speed * passed : 0), speed * longestLag);
     lastProceed_ = now;
-    const double dt = measurement_.dt > 0 ? measurement_.dt : 1e-4;
+    if (loader_) return;
+    if (shown_) return goOnLooking();
+    history_.setBudget(double(scene.view.history));
+    if (running) history_.passed(passed);
+    const Measurement& m = measurement_;
+    const double dt = m.dt > 0 ? m.dt : 1e-4;
     auto due = int64_t(std::ceil(lag_ / dt));
+    if (!halted.empty() || !(stepWanted_ || (running && due > 0))) return;
     if (stepsLeft_ > 0) due = std::min(due, stepsLeft_);
-    if (loader_ || !halted.empty() || !(stepWanted_ || (running && due > 0))) return;
-    stepper_->start(stepWanted_ ? Batch{1, 0} : Batch{due, budget});
+    const bool keeps = history_.isDue(m.time, m.steps);
+    due = std::min(due, history_.stepsToNext(m.steps));
+    due = std::min(due, std::max<int64_t>(int64_t(std::min((watchAt - m.time) / dt, 1e9)), 1));
+    stepper_->start({stepWanted_ ? 1 : due, stepWanted_ ? 0 : budget,
+                     keeps ? keeping() : std::function<void(Simulation&)>()});
     stepWanted_ = collected_ = false;
 }
 
 void Player::updateRates() {
     constexpr double period = 0.5;  // s
     const double now = wallTime(), wall = now - rateSince_;
-    if (wall < period) return;
+    if (wall < period || looksBack()) return;
     stepsPerSecond_ = double(measurement_.steps - rateSteps_) / wall;
     realTimeFactor_ = (measurement_.time - rateTime_) / wall;
     rateSince_ = now;

@@ -1,5 +1,6 @@
 #pragma once
 // Plays a scene in real time where it can: run, pause, step, reset, load. Knows nothing of pixels.
+#include "app/window/history.h"
 #include "app/window/live_knobs.h"
 #include "app/window/loader.h"
 #include "app/window/stepper.h"
@@ -7,14 +8,17 @@
 #include "scene/scene.h"
 
 #include <algorithm>
+#include <functional>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace spindrift {
 
 // Curves over the whole run, evenly spaced; when they grow long every second sample goes.
-struct History {
+struct Curves {
     std::vector<float> time, kinetic, potential, total, densityError;  // s, J, J, J, 1
     int dimensions = 3;                                                // in two J/m
     void add(const Measurement&);
@@ -37,7 +41,8 @@ public:
     std::string halted;  // why the run was stopped by itself; empty = it wasn't
     std::string
         notice;  // what the health guard says while the run goes on; whoever shows it empties it
-    std::vector<Particle> culprits;  // of a run that was stopped by itself
+    std::vector<Particle> culprits;                       // of a run that was stopped by itself
+    double watchAt = std::numeric_limits<double>::max();  // s: there it is wanted at hand, about
 
     // Requests; they are met when the simulation is at hand (collect).
     // Knobs that make no sense are put back, with a notice.
@@ -73,6 +78,22 @@ public:
     // Starts the steps that real time asks for, as many as fit into `budget` seconds of wall time.
     void proceed(double budget);
 
+    // --- looking back (history.h): the run stands still and what is at hand is a moment of it ---
+
+    // Goes to the moment that the run has come to. Blocks until the step at hand is done. False
+    // where nothing is kept; the notice says why.
+    bool lookBack();
+    bool looksBack() const { return shown_.has_value(); }
+    // To be shown as soon as it can be. Knobs are as they were then; what of them was changed since
+    // the last moment was asked for is taken back, with a notice.
+    void look(size_t moment);
+    size_t lookedAt() const { return wanted_; }
+    // As if it had not looked back.
+    void returnToPresent();
+    // Forgets what came after the moment that is shown. Blocks until it is.
+    void goOnFromHere();
+    const History& history() const { return history_; }
+
     // Stops the run and says why.
     void halt(const std::string& why);
 
@@ -84,8 +105,8 @@ public:
     // Error (Output).
     void saveCheckpoint(const std::string& file);
     // Whether steps would be lost if it ended now.
-    bool unsaved() const { return measurement_.steps > std::max(firstSteps_, savedSteps_); }
-    const History& history() const { return history_; }
+    bool unsaved() const { return stepsMade() > std::max(firstSteps_, savedSteps_); }
+    const Curves& curves() const { return curves_; }
     // What of the run is outside the validity of its method.
     const std::vector<Remark>& remarks() const { return validity_.remarks(); }
     const Scene& loadedScene() const { return origin_.scene; }
@@ -103,7 +124,23 @@ private:
         Scene before;
     };
 
+    // A state that the step thread fetches, to be kept.
+    struct Kept {
+        RunState state;
+        Measurement measurement;
+        double seconds = 0;  // that it took
+    };
+
     void begin(Loaded, bool again);
+    std::function<void(Simulation&)> keeping();
+    void takeKept();
+    void show(size_t moment);
+    void goOnLooking();
+    void dropAfter(double time);
+    void beginRates();
+    int64_t stepsMade() const {
+        return shown_ ? history_.back().measurement.steps : measurement_.steps;
+    }
     void takeMeasurement();
     void takeBackChangesAfter(double time);
     void meetRequests();
@@ -120,7 +157,12 @@ private:
     FluidExtent start_;
     int64_t firstSteps_ = 0, savedSteps_ = 0;
     Measurement measurement_;
+    Curves curves_;
     History history_;
+    std::shared_ptr<Kept> kept_;          // by the batch at hand
+    std::optional<size_t> shown_;         // moment, while it looks back
+    size_t wanted_ = 0;                   // moment to be shown
+    bool returns_ = false, ran_ = false;  // to the present; before it looked back
     Validity validity_{Scene{}};
     bool applyWanted_ = false, underWay_ = false, stirWanted_ = false, holdWanted_ = false,
          stepWanted_ = false, collected_ = false;

@@ -88,7 +88,7 @@ void showValues(const Axes& axes, const char* unit, const std::vector<float>& x,
 }  // namespace
 
 void plot(const char* title, const char* unit, const std::vector<float>& x,
-          std::vector<Curve> curves) {
+          std::optional<double> shown, std::vector<Curve> curves) {
     float yMin = 0, yMax = 0;
     for (const Curve& curve : curves)
         for (float y : curve.y) yMin = std::min(yMin, y), yMax = std::max(yMax, y);
@@ -107,6 +107,10 @@ void plot(const char* title, const char* unit, const std::vector<float>& x,
                                               ImGui::GetColorU32(ImGuiCol_FrameBg), 4);
     drawGrid(axes);
     for (const Curve& curve : curves) drawCurve(axes, x, curve);
+    if (shown && *shown <= double(axes.xMax))
+        ImGui::GetWindowDrawList()->AddLine(axes.at(float(*shown), yMin),
+                                            axes.at(float(*shown), yMax),
+                                            ImGui::GetColorU32(amber()), 1.5f);
     ImGui::Dummy(size);
     if (ImGui::IsItemHovered() && !x.empty()) showValues(axes, unit, x, curves);
 }

@@ -8,6 +8,11 @@
 
 namespace spindrift {
 
+double wallTime() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+
 Stepper::Stepper(std::unique_ptr<Simulation> simulation, const Scene& scene)
     : simulation_(std::move(simulation)),
       guard_(*simulation_, scene),
@@ -30,7 +35,7 @@ void Stepper::start(Batch batch) {
     {
         std::lock_guard lock(mutex_);
         CHECK(!busy_);
-        batch_ = batch;
+        batch_ = std::move(batch);
         busy_ = true;
     }
     changed_.notify_all();
@@ -39,6 +44,11 @@ void Stepper::start(Batch batch) {
 Simulation& Stepper::simulation() {
     CHECK(!busy());
     return *simulation_;
+}
+
+std::unique_ptr<Simulation> Stepper::release() {
+    CHECK(!busy());
+    return std::move(simulation_);
 }
 
 HealthGuard& Stepper::guard() {
@@ -65,24 +75,22 @@ void Stepper::work(std::stop_token stop) {
 }
 
 void Stepper::runBatch() {
-    using Clock = std::chrono::steady_clock;
-    const auto begin = Clock::now();
-    const auto seconds = [&] {
-        return std::chrono::duration<double>(Clock::now() - begin).count();
-    };
     try {
+        if (batch_.before) std::exchange(batch_.before, {})(*simulation_);
+        const double begin = wallTime();
         // A GPU says when it is done only when it is waited for, which costs: first one step, then
         // half of what may fit.
-        for (int64_t done = 0, group = 1; group > 0;) {
+        for (int64_t done = 0, group = std::min<int64_t>(batch_.steps, 1); group > 0;) {
             simulation_->step(int(group));
             simulation_->wait();
             done += group;
-            const double each = seconds() / double(done), rest = batch_.seconds - seconds();
+            const double passed = wallTime() - begin, each = passed / double(done),
+                         rest = batch_.seconds - passed;
             const auto fitting = std::max(int64_t(rest / (2 * each)), int64_t(rest > 0));
             group = std::min(fitting, batch_.steps - done);
         }
         measurement_ = simulation_->measure();
-        finding_ = guard_.look(measurement_);
+        finding_ = batch_.steps > 0 ? guard_.look(measurement_) : HealthGuard::Finding::Sound;
     } catch (...) { failure_ = std::current_exception(); }
 }
 

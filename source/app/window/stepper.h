@@ -6,16 +6,21 @@
 
 #include <condition_variable>
 #include <exception>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <thread>
 
 namespace spindrift {
 
-// Some steps, but none is begun after `seconds` of wall time.
+double wallTime();  // s
+
+// Some steps, or none, but none is begun after `seconds` of wall time; and what is done before
+// them.
 struct Batch {
     int64_t steps = 1;
     double seconds = 0.012;
+    std::function<void(Simulation&)> before = {};
 };
 
 // Handover: while busy() the thread alone touches the simulation, otherwise the owner alone does.
@@ -31,9 +36,11 @@ public:
     // Only while not busy:
     void start(Batch);
     Simulation& simulation();
+    // The simulation goes to another one; this one is over.
+    std::unique_ptr<Simulation> release();
     // Measured after the last batch. Throws what a step threw.
     const Measurement& measurement();
-    // What the guard found after that batch, and what it has to say.
+    // What the guard found after that batch, if it made steps, and what it has to say.
     HealthGuard::Finding finding() const { return finding_; }
     HealthGuard& guard();
 

@@ -51,6 +51,7 @@ void setLightColors(ImGuiStyle& style) {
 
 bool isLight() { return ImGui::GetStyle().Colors[ImGuiCol_WindowBg].x > 0.5f; }
 ImVec4 amber() { return isLight() ? ImVec4{0.62f, 0.36f, 0, 1} : ImVec4{1.0f, 0.80f, 0.42f, 1}; }
+ImVec4 red() { return isLight() ? ImVec4{0.75f, 0.12f, 0.08f, 1} : ImVec4{1.0f, 0.52f, 0.48f, 1}; }
 
 void setUpPanel(float scale, Theme theme) {
     ImGuiIO& io = ImGui::GetIO();

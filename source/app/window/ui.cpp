@@ -38,6 +38,7 @@ void Ui::say(const std::string& text, bool error) {
 }
 
 void Ui::toggleRun() {
+    if (player.looksBack()) return playMoments();
     player.running = !player.running && player.halted.empty();
     stale = true;
 }
@@ -51,6 +52,7 @@ void Ui::takeLoaded() {
     const Scene knobsBefore = player.scene;
     try {
         if (!player.takeLoaded()) return;
+        endRecording();
         picked.reset();
         pickedSolid = -1;
         isSlow = false, slowSince = uiTime();
@@ -72,13 +74,14 @@ Escape escapeFrom(const Opened& o) {
     if (o.loading) return Escape::CancelLoading;
     if (o.popup) return Escape::ClosePopup;
     if (o.help) return Escape::CloseHelp;
+    if (o.looksBack) return Escape::ReturnToPresent;
     if (o.fullscreen) return Escape::LeaveFullScreen;
     return o.unsaved ? Escape::Ask : Escape::Leave;
 }
 
 void Ui::escape() {
-    switch (escapeFrom(
-        {asking, player.loading() != nullptr, popupOpen, showHelp, fullscreen, player.unsaved()})) {
+    switch (escapeFrom({asking, player.loading() != nullptr, popupOpen, showHelp,
+                        player.looksBack(), fullscreen, player.unsaved()})) {
         case Escape::Stay:
             asking = false;
             break;
@@ -91,6 +94,9 @@ void Ui::escape() {
             break;
         case Escape::CloseHelp:
             showHelp = false;
+            break;
+        case Escape::ReturnToPresent:
+            returnToPresent();
             break;
         case Escape::LeaveFullScreen:
             fullscreen = false;
@@ -118,7 +124,98 @@ void Ui::undo() {
     say("undone: " + joined(paths));
 }
 
-void Ui::settleKnobs() { knobs.settle(player.scene); }
+// What a moment of before brings with it is no change, until the run goes on from there.
+void Ui::settleKnobs() {
+    if (!player.looksBack()) knobs.settle(player.scene);
+}
+
+bool Ui::lookBack() {
+    replay.playing = false;
+    if (player.looksBack()) return true;
+    stale = rewrite = true;
+    try {
+        return player.lookBack();
+    } catch (const Error& error) {  // a GPU was lost
+        say(error.what(), true);
+        return false;
+    }
+}
+
+void Ui::lookAt(double time) {
+    if (lookBack()) player.look(player.history().at(time));
+}
+
+void Ui::lookOn(int moments) {
+    if (!lookBack()) return;
+    const int at = int(player.lookedAt()) + moments;
+    if (at >= 0) player.look(size_t(at));
+}
+
+void Ui::playMoments() {
+    if (replay.playing || !lookBack()) {
+        replay.playing = false;
+        return;
+    }
+    if (player.lookedAt() + 1 == player.history().size()) player.look(0);
+    replay.start();
+    replayedAt = uiTime();
+}
+
+void Ui::replayOn() {
+    const double passed = uiTime() - std::exchange(replayedAt, uiTime());
+    if (!player.looksBack()) replay.playing = false;
+    if (!replay.playing) return;
+    const double speed = double(player.scene.view.speed);
+    player.look(replay.next(player.history(), player.lookedAt(), passed, speed));
+}
+
+void Ui::goOnFromHere() {
+    if (!player.looksBack()) return;
+    replay.playing = false;
+    const std::shared_ptr<const Scene> present = player.history().back().asked;
+    const Scene before = knobs.settled();
+    try {
+        player.goOnFromHere();
+    } catch (const Error& error) { return say(error.what(), true); }
+    if (player.scene.simulation.formulation != present->simulation.formulation)
+        endRecording();  // its series would get other columns
+    noteDevice();
+    const auto changed = changedKnobs(before, player.scene, KnobKind::Physics);
+    say(fmt::format("goes on from {:.4g} s{}", player.measurement().time,
+                    changed.empty() ? ""
+                                    : " with other knobs than before: " + joined(changed) +
+                                          " (Ctrl + Z brings those back)"));
+}
+
+void Ui::returnToPresent() {
+    replay.playing = false;
+    player.returnToPresent();
+}
+
+void Ui::toggleRecording() {
+    if (recording) return endRecording();
+    if (player.looksBack())
+        return say("looking back: Enter goes on from here, then it can be recorded");
+    try {
+        recording = std::make_unique<Recording>(player.scene, player.measurement().time, area.width,
+                                                area.height);
+        say("recording; V ends it");
+    } catch (const Error& error) { say(error.what(), true); }
+}
+
+void Ui::endRecording() {
+    if (!recording) return;
+    const std::unique_ptr<Recording> ended = std::move(recording);
+    if (ended->seconds() == 0) return say("nothing was recorded");
+    try {
+        ended->finish();
+        std::printf("%s\n%s\n", ended->film().c_str(), ended->series().c_str());
+        std::fflush(stdout);
+        say(fmt::format("film of {:.3g} s: {}\nseries: {}", ended->seconds(), ended->film(),
+                        ended->series()));
+        message.until += 4;  // two paths to read
+    } catch (const Error& error) { say(error.what(), true); }
+}
 
 float Ui::stirRadius() const {
     const Scene& scene = player.scene;
@@ -173,6 +270,7 @@ void Ui::take(const Remedy& remedy) {
         case Remedy::How::Again:
             return player.beginAnew(remedy.scene);
         case Remedy::How::GoOn:
+            if (!player.looksBack()) endRecording();  // its series would get other columns
             player.goOnWith(remedy.scene.simulation.formulation, player.scene.compute.backend);
             noteDevice();
             return say("goes on, and solves for pressures");
@@ -268,10 +366,10 @@ bool Ui::saveCheckpoint() {
 
 void Ui::saveCurves() {
     saveAs(*this, ".csv", "",
-           [&](const std::string& path) { writeText(path, csvOf(player.history())); });
+           [&](const std::string& path) { writeText(path, csvOf(player.curves())); });
 }
 
-std::string csvOf(const History& h) {
+std::string csvOf(const Curves& h) {
     std::string text = "time [s]";
     for (const char* form : {"kinetic", "potential", "total"})
         text += fmt::format(",{} energy [{}]", form, perDepth("J", h.dimensions));
@@ -282,37 +380,49 @@ std::string csvOf(const History& h) {
     return text;
 }
 
-// The particle in front whose sphere the ray through the mouse meets; where fluid isn't drawn, the
-// one that is nearest to the surface under the mouse.
+namespace {
+
+std::optional<Particle> nearestTo(Vec3d place, const std::vector<Particle>& particles) {
+    const auto found = std::min_element(
+        particles.begin(), particles.end(), [&](const Particle& a, const Particle& b) {
+            return length(a.position - place) < length(b.position - place);
+        });
+    return found == particles.end() ? std::nullopt : std::optional(*found);
+}
+
+}  // namespace
+
+// The particle in front whose sphere the ray through the mouse meets, of those that are shown;
+// where fluid isn't drawn, the one that is nearest to the surface under the mouse.
 void Ui::pick() {
     const Scene& scene = player.scene;
     const Vec3d corner = toDouble(scene.domain.min);
-    const ClipBox box = clipBox(scene);
     const bool unseen = scene.view.slice.axis != Across::None && !scene.view.slice.fluid;
     const std::array<float, 2> at = *pickAt;
     const Ray ray = camera().ray(at[0], at[1], float(area.width), float(area.height));
-    const Vec3d origin = toDouble(ray.origin) + corner, direction = toDouble(ray.direction);
+    const Vec3d origin = toDouble(ray.origin), direction = toDouble(ray.direction);
     const double radius = 0.5 * scene.simulation.spacing * scene.view.particleScale;
     const std::optional<Vec3> seen = frame.surfaceAt(int(at[0]), int(at[1]));
     double nearest = unseen ? 2 * double(scene.simulation.spacing) : 1e30;
+    std::optional<Vec3d> place;
     pickAt.reset();
     picked.reset();
     pickedSolid = -1;
-    for (const Particle& p : player.simulation().particles()) {
-        if (!box.holds(toFloat(p.position - corner)) || (unseen && !seen)) continue;
-        const Vec3d to = p.position - origin;
+    for (const Vec3& shown : frame.shownFluid(scene)) {
+        if (unseen && !seen) break;
+        const Vec3d to = toDouble(shown) - origin;
         const double along = dot(to, direction);
         const bool isMet = along > 0 && dot(to, to) - along * along <= radius * radius;
         if (!unseen && !isMet) continue;
-        const double far = unseen ? length(p.position - corner - toDouble(*seen)) : along;
+        const double far = unseen ? length(toDouble(shown - *seen)) : along;
         if (far >= nearest) continue;
         nearest = far;
-        picked = p;
+        place = toDouble(shown) + corner;
     }
     const bool inFront =
-        seen && (unseen || length(toDouble(*seen) + corner - origin) < nearest - 2 * radius);
+        seen && (unseen || length(toDouble(*seen) - origin) < nearest - 2 * radius);
     if (inFront) pickedSolid = player.simulation().solidAt(toDouble(*seen) + corner);
-    if (pickedSolid >= 0) picked.reset();
+    if (place && pickedSolid < 0) picked = nearestTo(*place, player.simulation().particles());
     player.scene.view.pathOf = picked ? picked->id : -1;
     stale = rewrite = true;
 }

@@ -2,7 +2,9 @@
 // What the window's parts share: the player, the picture, and what the user is doing.
 #include "app/frame.h"
 #include "app/window/player.h"
+#include "app/window/recording.h"
 #include "app/window/remedies.h"
+#include "app/window/replay.h"
 
 #include <SDL.h>
 
@@ -71,6 +73,10 @@ struct Ui {
     std::optional<Particle> picked;
     int pickedSolid = -1;
 
+    Replay replay;                         // while the run is looked back at
+    double replayedAt = 0;                 // s, of the clock
+    std::unique_ptr<Recording> recording;  // null: none
+
     Message message;
     std::string noGpu;  // why there is no GPU to switch to; empty = there is one
     std::vector<SceneEntry>
@@ -78,7 +84,8 @@ struct Ui {
     std::string typedFile;  // in the scene list
     std::vector<PassTime> times;
     std::string device, glRenderer;
-    bool onGpu = false;  // steps
+    std::string colorFile;  // that was looked at last: whether it can be read
+    bool onGpu = false;     // steps
     int fluidCount = 0, wallCount = 0;
     double drawMs = 0;  // of the last picture
 
@@ -98,6 +105,19 @@ struct Ui {
     void escape();
     void leave();
     void undo();
+
+    // Of the moments that are kept, the last one; the one nearest to a time, s; so many on or back;
+    // all of them, one after the other, or pause.
+    bool lookBack();
+    void lookAt(double time);
+    void lookOn(int moments);
+    void playMoments();
+    void replayOn();  // while they are played
+    void goOnFromHere();
+    void returnToPresent();
+    // Film and series of what the run does from now on, or the end of them.
+    void toggleRecording();
+    void endRecording();
     void settleKnobs();        // now that nothing is held
     float stirRadius() const;  // m
     void setStirRadius(float);
@@ -126,15 +146,24 @@ private:
 };
 
 // What Esc does: the first that there is to do.
-enum class Escape { Stay, CancelLoading, ClosePopup, CloseHelp, LeaveFullScreen, Ask, Leave };
+enum class Escape {
+    Stay,
+    CancelLoading,
+    ClosePopup,
+    CloseHelp,
+    ReturnToPresent,
+    LeaveFullScreen,
+    Ask,
+    Leave
+};
 struct Opened {
-    bool question = false, loading = false, popup = false, help = false, fullscreen = false,
-         unsaved = false;
+    bool question = false, loading = false, popup = false, help = false, looksBack = false,
+         fullscreen = false, unsaved = false;
 };
 Escape escapeFrom(const Opened&);
 
 // The columns of the curves, with units; a line for each sample.
-std::string csvOf(const History&);
+std::string csvOf(const Curves&);
 
 double uiTime();  // s
 

@@ -6,6 +6,7 @@
 #include "app/window/panel.h"
 #include "app/window/ui.h"
 #include "core/error.h"
+#include "core/system.h"
 
 #include <SDL.h>
 #include <backends/imgui_impl_opengl3.h>
@@ -15,7 +16,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <limits>
 #include <memory>
+#include <utility>
 
 namespace spindrift {
 
@@ -31,6 +35,7 @@ struct Screen {
     SDL_GLContext context = nullptr;
 
     explicit Screen(const Scene& scene) {
+        SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");  // they would only ask whether to leave
         if (SDL_Init(SDL_INIT_VIDEO) != 0) noDisplay(SDL_GetError());
         // Without a screen SDL falls back to drivers that show nothing, and says nothing.
         const std::string driver = SDL_GetCurrentVideoDriver();
@@ -151,6 +156,7 @@ Loaded loadFirst(const Screen& screen, Gui& gui, Start start) {
             if (event.type == SDL_QUIT ||
                 (event.type == SDL_KEYDOWN && event.key.keysym.sym == SDLK_ESCAPE))
                 throw Left{};
+        if (os::StopSignals::received() != 0) throw Left{};
         int width = 1, height = 1;
         SDL_GL_GetDrawableSize(screen.window, &width, &height);
         gui.beginPicture(screen.window);
@@ -177,7 +183,7 @@ public:
     }
 
     int run() {
-        while (!ui_.quit) {
+        while (!ui_.quit && os::StopSignals::received() == 0) {
             handleEvents();
             ui_.takeLoaded();
             followWindow();
@@ -187,6 +193,7 @@ public:
             limitRate();
             if (ui_.screenshot) ui_.takeScreenshot();
         }
+        ui_.endRecording();
         return int(Exit::Ok);
     }
 
@@ -196,7 +203,7 @@ private:
 
     bool idle() const {
         return !ui_.player.running && !ui_.player.busy() && !ui_.player.loading() && !ui_.stale &&
-               settle_ <= 0;
+               !ui_.replay.playing && settle_ <= 0;
     }
 
     void handleEvents() {
@@ -230,7 +237,8 @@ private:
         SDL_GL_GetDrawableSize(screen_.window, &width, &height);
         ui_.density = densityOf(screen_.window);
         const int left = std::min(panelWidth(ui_), width - 1);
-        ui_.area = {left, 0, std::max(width - left, 1), std::max(height, 1)};
+        const int below = std::min(timeLineHeight(ui_), height - 1);
+        ui_.area = {left, 0, std::max(width - left, 1), std::max(height - below, 1)};
         windowHeight_ = height;
         if (ui_.frame.width() == ui_.area.width && ui_.frame.height() == ui_.area.height) return;
         ui_.frame.resize(ui_.area.width, ui_.area.height);
@@ -254,8 +262,10 @@ private:
         moved_ |= moved;
         if (!ui_.player.notice.empty()) ui_.say(std::exchange(ui_.player.notice, {}), true);
         ui_.stale |= !ui_.player.culprits.empty() && moved;
+        ui_.replayOn();
         try {
-            if (ui_.rewrite || (moved_ && timeForPicture())) updateVertices();
+            if (ui_.rewrite || (moved_ && (timeForPicture() || ui_.pickAt))) updateVertices();
+            record();
             if (ui_.pickAt) ui_.pick();
             if (ui_.grabWanted) ui_.grab();
         } catch (const Error& error) {  // a GPU was lost
@@ -273,9 +283,39 @@ private:
     void updateVertices() {
         ui_.rewrite = moved_ = false;
         ui_.stale = true;
-        ui_.frame.update(ui_.player.simulation(), ui_.player.scene);
+        ui_.frame.update(ui_.player.simulation(), ui_.player.scene, ui_.player.looksBack());
         ui_.fluidCount = ui_.player.simulation().fluidCount();
         ui_.refreshPicked();
+    }
+
+    void record() {
+        ui_.player.watchAt = std::numeric_limits<double>::max();
+        Recording* recording = ui_.recording.get();
+        if (!recording || ui_.player.looksBack()) return;
+        try {
+            recording->follow(ui_.player.simulation(), ui_.player.measurement(),
+                              ui_.player.remarks());
+            if (recording->wantsPicture()) {
+                if (moved_) updateVertices();
+                drawForFilm(*recording);
+            }
+            ui_.player.watchAt = recording->next();
+        } catch (const Error& error) {  // a disk is full
+            ui_.endRecording();
+            ui_.say(error.what(), true);
+        }
+    }
+
+    // As large as the film began, and as smooth as the window allows.
+    void drawForFilm(Recording& recording) {
+        const bool isAsLarge =
+            recording.width() == ui_.area.width && recording.height() == ui_.area.height;
+        ui_.frame.setSamples(samples_);
+        if (!isAsLarge) ui_.frame.resize(recording.width(), recording.height());
+        ui_.frame.draw(ui_.player.scene, ui_.rings(), ui_.marks());
+        recording.add(ui_.frame.image(), double(ui_.player.scene.view.speed));
+        if (!isAsLarge) ui_.frame.resize(ui_.area.width, ui_.area.height);
+        ui_.stale = !isAsLarge, drawn_ = true;
     }
 
     // Where the processor draws, a run that's late gets at least as much of it as the pictures do.
@@ -314,7 +354,9 @@ private:
     void readTimes() {
         if (uiTime() < nextTimes_) return;
         nextTimes_ = uiTime() + 0.5;
-        ui_.times = ui_.player.simulation().times();
+        // While it stands still those that were measured before hold.
+        if (std::vector<PassTime> times = ui_.player.simulation().times(); !times.empty())
+            ui_.times = std::move(times);
         ui_.player.simulation().resetTimes();
     }
 
@@ -371,9 +413,14 @@ private:
 }  // namespace
 
 int runWindow(Start start) {
+    const os::StopSignals signals;
+    int code = int(Exit::Ok);
     try {
-        return Desktop(std::move(start)).run();
-    } catch (const Left&) { return int(Exit::Ok); }
+        code = Desktop(std::move(start)).run();
+    } catch (const Left&) {}
+    const int signal = os::StopSignals::received();
+    if (signal != 0) std::fprintf(stderr, "spindrift: stopped by a signal\n");
+    return signal != 0 ? 128 + signal : code;
 }
 
 }  // namespace spindrift

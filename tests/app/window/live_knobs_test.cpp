@@ -146,6 +146,7 @@ TEST(Escape, ClosesOneThingAfterTheOther) {
         {&Opened::loading, Escape::CancelLoading},
         {&Opened::popup, Escape::ClosePopup},
         {&Opened::help, Escape::CloseHelp},
+        {&Opened::looksBack, Escape::ReturnToPresent},
         {&Opened::fullscreen, Escape::LeaveFullScreen},
         {&Opened::unsaved, Escape::Ask}};
     for (unsigned open = 0; open < 1u << order.size(); ++open) {
@@ -158,7 +159,7 @@ TEST(Escape, ClosesOneThingAfterTheOther) {
 }
 
 TEST(Curves, AreSavedWithUnits) {
-    History history;
+    Curves history;
     Measurement m;
     m.time = 0.5, m.kineticEnergy = 1, m.potentialEnergy = 2, m.densityError = 0.01;
     history.add(m);

@@ -1,9 +1,7 @@
 // Running, loading and resetting without a window.
-#include "app/window/player.h"
-
 #include "core/error.h"
 #include "measure/checkpoint.h"
-#include "scene/json.h"
+#include "play.h"
 
 #include <gtest/gtest.h>
 
@@ -20,35 +18,17 @@ namespace {
 
 const std::string small = SPINDRIFT_SOURCE_DIR "/configs/test/dam_break_small.json";
 
-Loaded ready(Scene scene) {
-    return Loader([scene = std::move(scene)] { return Start{scene, {}}; }).take();
-}
-
 // Waits for what is made ready in the background. Throws what went wrong.
 void finishLoading(Player& player) {
     while (!player.takeLoaded()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-}
-
-// Plays until `done` or for ten seconds.
-template <class Done> bool play(Player& player, Done done) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
-    while (std::chrono::steady_clock::now() < end) {
-        bool moved = false;
-        if (player.collect(moved)) {
-            if (done()) return true;
-            player.proceed(0.005);
-        }
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    return false;
 }
 
 TEST(Player, RunsAndKeepsItsHistory) {
     Player player(ready(loadScene(small)));
     EXPECT_TRUE(play(player, [&] { return player.measurement().steps >= 30; }));
     EXPECT_GT(player.measurement().time, 0);
-    EXPECT_GE(player.history().time.size(), 3u);
-    EXPECT_EQ(player.history().time.size(), player.history().densityError.size());
+    EXPECT_GE(player.curves().time.size(), 3u);
+    EXPECT_EQ(player.curves().time.size(), player.curves().densityError.size());
 }
 
 TEST(Player, SingleStepIsOneStepAndPauses) {
@@ -82,7 +62,7 @@ TEST(Player, ResetBringsBackTheSceneAsLoadedButTheCamera) {
     EXPECT_FALSE(player.unsaved());
     EXPECT_TRUE(changedKnobs(player.scene, loaded, KnobKind::ButCamera).empty());
     EXPECT_EQ(player.scene.view.camera.yaw, 77);
-    EXPECT_LE(player.history().time.size(), 1u);
+    EXPECT_LE(player.curves().time.size(), 1u);
 }
 
 TEST(Player, ResetOfARunFromACheckpointIsTheCheckpoint) {
@@ -252,12 +232,12 @@ TEST(Player, CurvesOfARunThatGoesOnShowAllOfIt) {
     Player player(ready(loadScene(small)));
     ASSERT_TRUE(play(player, [&] { return player.measurement().steps >= 20; }));
     player.saveCheckpoint(kept);
-    const History before = player.history();
+    const Curves before = player.curves();
     ASSERT_GE(before.time.size(), 2u);
     player.load(kept);
     finishLoading(player);
     // The run may have been a few steps further than what had been measured of it.
-    const History& after = player.history();
+    const Curves& after = player.curves();
     ASSERT_GE(after.time.size(), before.time.size());
     for (size_t i = 0; i < before.time.size(); ++i) {
         EXPECT_EQ(after.time[i], before.time[i]);
@@ -280,9 +260,9 @@ TEST(Player, CurvesOfARunThatGoesOnShowAllOfIt) {
         writeCheckpoint(plain, scene, c.state);
         player.load(plain);
         finishLoading(player);
-        return player.history();
+        return player.curves();
     };
-    const History own = load(1), others = load(10);
+    const Curves own = load(1), others = load(10);
     ASSERT_EQ(own.time.size(), 3u) << "two rows, and where it stands";
     EXPECT_FLOAT_EQ(own.time[1], float(0.5 * c.state.clock.time));
     EXPECT_EQ(own.total[1], 3);
@@ -291,8 +271,8 @@ TEST(Player, CurvesOfARunThatGoesOnShowAllOfIt) {
     std::filesystem::remove_all(folder);
 }
 
-TEST(History, ThinsOutInsteadOfGrowing) {
-    History history;
+TEST(Curves, ThinsOutInsteadOfGrowing) {
+    Curves history;
     Measurement m;
     for (int i = 0; i < 10000; ++i) {
         m.time = i;

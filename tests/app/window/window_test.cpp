@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <thread>
@@ -241,6 +242,63 @@ TEST_F(WindowTest, EscapeClosesHelpThenFullScreenThenAsksThenLeaves) {
     EXPECT_TRUE(window.running());
     window.act("key Escape sleep 0.5 key Return");
     EXPECT_EQ(window.wait(20), 0) << window.log();
+}
+
+// By the keys and by the mouse, into the past and back.
+TEST_F(WindowTest, TimeLineLooksBackAndReturns) {
+    Window window(
+        *screen, {"test/dam_break_small", "--size", "800x600", "--set", "view.range=fixed", "--set",
+                  "view.range_max=2", "--set", "view.speed=0.2"});
+    window.act("sleep 2.5 key space");
+    const Image present = settled(window);
+    window.act("key Left sleep 0.3 key Left sleep 0.3");
+    const Image before = settled(window);
+    EXPECT_GT(difference(present, before), 1e-4) << "Left looked back";
+    window.act("key Right sleep 0.3 key Right sleep 0.3");
+    EXPECT_LT(difference(present, settled(window)), 1e-4) << "Right came back";
+    window.act("key Escape sleep 0.5");
+    EXPECT_LT(difference(present, settled(window)), 1e-4) << "Esc returned to now";
+    EXPECT_TRUE(window.running());
+    window.drag(1, 700, 553, 90, 553);  // along the line below the picture
+    const Image start = settled(window);
+    EXPECT_GT(difference(before, start), seen) << "the beginning is farther back";
+    window.act("key Escape sleep 0.5");
+    EXPECT_LT(difference(present, settled(window)), 1e-4);
+    window.act("key l key p sleep 0.5");
+    EXPECT_GT(difference(present, window.screenshot()), 1e-4)
+        << "it plays from the start, in a loop";
+    window.act("key space key Escape sleep 0.5");
+    EXPECT_LT(difference(present, settled(window)), 1e-4);
+    // From the beginning on, until it has gone another way: then now is not what it was.
+    window.drag(1, 700, 553, 90, 553);
+    EXPECT_EQ(settled(window), start);
+    window.act("key Return sleep 2 key space");
+    EXPECT_GT(difference(start, settled(window)), seen) << "Enter went on from there";
+}
+
+TEST_F(WindowTest, RecordingIsAFilmAndASeriesAndOverwritesNothing) {
+    if (!allInstalled({"ffmpeg"})) GTEST_SKIP() << "there is no ffmpeg";
+    Window window(*screen, {"test/dam_break_small", "--size", "640x480"});
+    for (const char* number : {"001", "002"}) {
+        window.act("key v sleep 2 key v");
+        for (const char* kind : {".mp4", ".csv"})
+            EXPECT_TRUE(window.prints(std::string("-") + number + kind)) << window.log();
+    }
+    window.act("key v sleep 1");
+    window.send(SIGTERM);
+    EXPECT_EQ(window.wait(20), 128 + SIGTERM) << window.log();
+    EXPECT_TRUE(window.prints("-003.mp4")) << "it is whole all the same";
+}
+
+// Without a question, as a run without a window does.
+TEST_F(WindowTest, SignalsEndIt) {
+    for (const int signal : {SIGTERM, SIGINT}) {
+        Window window = paused();
+        settled(window);
+        window.send(signal);
+        EXPECT_EQ(window.wait(20), 128 + signal) << window.log();
+        EXPECT_NE(window.log().find("stopped by a signal"), std::string::npos) << window.log();
+    }
 }
 
 // A run without a step has nothing to lose.

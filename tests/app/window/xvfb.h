@@ -63,6 +63,7 @@ public:
     // F12, and the picture it saved.
     Image screenshot();
     int wait(double seconds) { return program_.wait(seconds); }
+    void send(int signal) const { program_.send(signal); }
     bool running() { return program_.running(); }
     double cpuTime() const { return program_.cpuTime(); }
     std::string log() const;
