@@ -137,21 +137,20 @@ TEST(Collisions, BodiesStopFluidWhereItCame) {
 // spacing deep in its flank.
 TEST(Collisions, MeshesThatEndAtWallsHaveNoWayInThere) {
     for (const double thick : {0.02, 0.075})
-        for (const char* motion : {"", R"(,"keyframes":[[0,0,0,0],[1,0,0.3,0]])"})
-            for (const char* periodic : {"false", "true"})
-                for (const double along : {-3.0, 3.0}) {
-                    const double end = 0.5 + thick;
-                    const std::vector<Vec3d> L{{0.5, -0.5, 0}, {0.9, -0.5, 0}, {0.9, -0.2, 0},
-                                               {end, -0.2, 0}, {end, 1.5, 0},  {0.5, 1.5, 0}};
-                    Scene scene =
-                        dustOf({"solids=[" + mesh(prismSurface(L, 0, 1), "profile", motion) + "]",
-                                fmt::format("simulation.gravity=5,0,{}", along),
-                                "walls.restitution=0", std::string("domain.periodic_z=") + periodic,
-                                R"(fluid.bodies=[{"shape":"block","min":[0.3,0.4,0],
-                             "max":[0.4,0.6,1]}])"});
-                    expectAll(fmt::format("{}{} {} {}", thick, motion, periodic, along), scene, 100,
-                              [](const Particle& p) { return p.position.x < 0.5005; });
-                }
+        for (const char* motion : {"", R"(,"keyframes":[[0,0,0,0],[1,0,0.1,0]])"})
+            for (const bool periodic : {false, true}) {
+                const double end = 0.5 + thick;
+                const std::vector<Vec3d> L{{0.5, -0.15, 0}, {0.9, -0.15, 0}, {0.9, 0, 0},
+                                           {end, 0, 0},     {end, 1.05, 0},  {0.5, 1.05, 0}};
+                const Scene scene = dustOf(
+                    {"solids=[" + mesh(prismSurface(L, 0, 1), "profile", motion) + "]",
+                     std::string("simulation.gravity=5,0,") + (periodic ? "-3" : "3"),
+                     std::string("domain.periodic_z=") + (periodic ? "true" : "false"),
+                     "walls.restitution=0",
+                     R"(fluid.bodies=[{"shape":"block","min":[0.3,0.4,0],"max":[0.4,0.6,1]}])"});
+                expectAll(fmt::format("{}{} {}", thick, motion, periodic), scene, 100,
+                          [](const Particle& p) { return p.position.x < 0.5005; });
+            }
 }
 
 TEST(Collisions, PlatesThatMoveTakeAlongWhatTheyMeet) {
