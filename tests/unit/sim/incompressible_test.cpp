@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdio>
 #include <random>
+#include <utility>
 
 namespace spindrift {
 namespace {
@@ -172,7 +173,7 @@ TEST(Incompressible, DensitiesAreAsGoodAsAsked) {
             sum += m.densityError;
         }
         EXPECT_LT(sum / steps, double(asked));
-        EXPECT_LT(sum / steps, last);
+        EXPECT_LE(sum / steps, last);  // as good already where pressures ask for more
         last = sum / steps;
     }
 }
@@ -226,11 +227,11 @@ LayerErrors layerErrors(int layers, float longestStep) {
 
 // Nor do they swing, however deep the tank and short the steps.
 TEST(Incompressible, LayersHaveTheirPressureAtAllTimes) {
-    for (const int layers : {30, 60})
+    for (const auto& [layers, most] : {std::pair{30, 0.008}, std::pair{60, 0.012}})
         for (const float longestStep : {0.0f, 0.006f}) {
             const LayerErrors e = layerErrors(layers, longestStep);
-            EXPECT_LT(e.rms, 0.012) << layers << " layers, " << longestStep << " s";
-            EXPECT_LT(e.worst, 0.025) << layers << " layers, " << longestStep << " s";
+            EXPECT_LT(e.rms, most) << layers << " layers, " << longestStep << " s";
+            EXPECT_LT(e.worst, 0.022) << layers << " layers, " << longestStep << " s";
             std::printf("%d layers, steps of at most %g s: rms %.2f %%, worst %.2f %%\n", layers,
                         double(longestStep), 100 * e.rms, 100 * e.worst);
         }
