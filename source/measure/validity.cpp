@@ -209,6 +209,12 @@ void Validity::look(const Measurement& m) {
                            "solver.iterations or lower time.cfl",
                            m.solve.failures, m.steps),
                m.time);
+    if (double(m.solve.rough) > 10 + 0.02 * double(m.steps))
+        remark(fmt::format("long waves of pressure: not found in {} of {} steps, and pressures of "
+                           "deep fluid are not to be trusted; raise solver.iterations or set "
+                           "simulation.formulation to delta_sph",
+                           m.solve.rough, m.steps),
+               m.time);
     if (m.massMissed > 0)
         remark(fmt::format("fluid of {}: from {:.4g} s on less comes than is to, because the "
                            "domain is full, or the run goes on beyond output.time; let fluid out "

@@ -67,6 +67,7 @@ struct SolveReport {
     double error = 0;      // of density in the step, mean, share of the rest density
     double allowed = 0;    // with which iterations end
     int64_t failures = 0;  // steps of the run whose pressures were not found
+    int64_t rough = 0;     // and those whose long waves of pressure were not
 };
 
 // What a run says of itself. Energies in J, momentum in kg m/s, in two dimensions per metre of

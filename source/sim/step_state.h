@@ -14,6 +14,7 @@ struct StepState {
     double longest = 0;   // s, what the last step could have been without a stop
     double share = 1;     // of it, that steps take: less where pressures were not found
     double momentum = 0;  // of the iterations for pressures
+    double pressureScale = 1;  // by which they still change when those have ended
     // With local steps `dt` is the time to the next substep in which any particle is active, and
     // `longest` the step of calm fluid and of the whole.
     int substep = 0;         // where in it the run stands, in 64ths; outside of step() 0

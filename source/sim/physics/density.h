@@ -51,7 +51,7 @@ template <class Kernel, bool solved = false> struct ComputeDensity {
         const R others = fluid + R((v.c.selfWeight - 1) * valueOf<Kernel>(v.c, real(0)));
         const R rho = R(v.c.kernelScale) * (others + total(walls));
         if constexpr (solved)
-            storeDensity(v, i, rho);
+            storeDensity(v, i, rho), store(v.fluid.fluidWeight, i, fluid);
         else
             storeState(v, i, rho);
     }

@@ -7,6 +7,9 @@
 // Walls mirror the fluid's pressure, mu = 1. What they have more, that of fluid at rest in between,
 // does not change as pressures do and is a force like others (Band 2018 extrapolate linearly, too).
 // So an iteration asks walls for B_i alone.
+// Pressures that alternate from particle to particle push none of them: D a does not see them, and
+// what feeds them would add up from step to step. A fiftieth of a Laplacian that sees neighbours,
+// sum_j m W (p_j - p_i) / h^2, holds them together (Rhie & Chow 1983 mend the same on grids).
 #pragma once
 
 #include "sim/neighbours/neighbours.h"
@@ -23,6 +26,12 @@ template <class Pass, class Sum> HD inline void sumAround(const Pass& pass, IClu
         sum = sum + pass.of(p, own, pass.input(j));
     });
     pass.finish(i, total(sum));
+}
+
+// kg/m^2: the second moment of W makes sum_j of this times W (p_j - p_i) a fiftieth of the
+// Laplacian.
+HD inline real evenness(const StepParameters& c) {
+    return real(0.4) * c.kernelScale * c.inverseSupport2;
 }
 
 // What walls give to a particle: B_i, and the acceleration by the pressure that they have more than
@@ -59,12 +68,15 @@ template <class Kernel, Lists which> struct SumGradients {
         const Vector<real> gravity = gravityNow(v);
         const Vector<R> x = load(v.fluid.position, i);
         Vector<R> walls{R(0), R(0), R(0)}, rest = walls;
+        R differences = 0;
         forNeighbours<lists>(v, v.wallsNearFluid, i, x, [&](const auto& p, JCluster j) LANE_CALL {
             const Vector<R> slope = (load(v.walls.mass, j) * slopeOf<Kernel>(v.c, p.q)) * p.r;
             const Vector<R> pull =
                 bodyForce(v.c, gravity, load(v.walls.position, j)) - ownAcceleration(v.walls, j);
             walls = walls + slope;
             rest = addScaled(rest, dot(pull, p.r), slope);
+            differences = negMulAdd(load(v.walls.mass, j) * valueOf<Kernel>(v.c, p.q),
+                                    dot(pull, p.r), differences);
         });
         const R scale = v.c.gradientScale, zero = 0;
         const Vector<R> toWalls = scale * total(walls), all = scale * fluid + toWalls;
@@ -72,6 +84,7 @@ template <class Kernel, Lists which> struct SumGradients {
                 bears = mulAdd(R(real(0.5)), squares, push);
         const R mirrored = bears / max(zero - mirror, bears);
         store(v.fluid.wallGradient, i, toWalls);
+        store(v.fluid.residual, i, total(differences));
         store(v.fluid.mirrored, i, mirrored);
         store(v.fluid.diagonal, i, max(mulAdd(mirrored, mirror, push), zero) + squares);
         store(v.fluid.acceleration, i,
@@ -115,6 +128,7 @@ template <class Kernel, Lists which> struct FindSource {
     HD void finish(ICluster i) const { finish(i, load(field(), i)); }
     HD void finish(ICluster i, R fluid) const {
         const Vector<R> own = input(i);
+        const R differences = load(v.fluid.residual, i);  // of walls' pressures
         R walls = 0;
         forNeighbours<lists>(v, v.wallsNearFluid, i, load(v.fluid.position, i),
                              [&](const auto& p, JCluster j) LANE_CALL {
@@ -122,13 +136,14 @@ template <class Kernel, Lists which> struct FindSource {
                                  walls = mulAdd(load(v.walls.mass, j) * slopeOf<Kernel>(v.c, p.q),
                                                 dot(apart, p.r), walls);
                              });
-        const R perRest = 1 / v.c.restDensity,
-                grown = R(v.c.gradientScale) * (fluid + total(walls));
-        const R error = mulAdd(perRest, load(v.fluid.density, i), R(-1)),
+        const real perRest = 1 / v.c.restDensity;
+        const R grown = R(v.c.gradientScale) * (fluid + total(walls));
+        const real even = evenness(v.c) * real(v.state->dt * v.state->dt) * perRest;
+        const R error = mulAdd(R(perRest), load(v.fluid.density, i), R(-1)),
                 torn = min(error + R(real(small)), R(0));
         store(field(), i,
-              mulAdd(perRest * R(real(v.state->dt)), grown,
-                     mulAdd(R(share.now(v)), error - torn, torn)));
+              mulAdd(R(perRest * real(v.state->dt)), grown,
+                     mulAdd(R(share.now(v)), error - torn, mulAdd(R(even), differences, torn))));
         store(v.fluid.lastPressure, i, load(v.fluid.pressureOverRho2, i));
     }
 };
@@ -164,9 +179,11 @@ template <class Kernel, Lists which> struct RelaxPressure {
     using Index = ICluster;
     using R = Real<ICluster>;
     struct Parameters {
-        real relaxation;
+        real relaxation, even;
         static Parameters of(const Model& m) {
-            return {real(m.scene->solver.relaxation / m.largestEigenvalue)};
+            const StepParameters& c = m.shared;
+            return {real(m.scene->solver.relaxation / m.largestEigenvalue),
+                    evenness(c) * c.restDensity / c.gradientScale};
         }
     };
     View v;
@@ -176,17 +193,27 @@ template <class Kernel, Lists which> struct RelaxPressure {
     static constexpr uint8_t activeFrom = Active;
     static constexpr bool opposite = false;
     HD ScalarField field() const { return v.fluid.residual; }
-    template <class I> HD Vector<R> input(I i) const {
-        return load(v.fluid.pressureAcceleration, i);
+    struct Pushed {
+        Vector<R> acceleration;
+        R pressure;
+    };
+    template <class I> HD Pushed input(I i) const {
+        return {load(v.fluid.pressureAcceleration, i),
+                R(own.even) * load(v.fluid.pressureOverRho2, i)};
     }
-    HD R of(const Pair<R>& p, Vector<R> own, Vector<R> other) const {
-        return slopeOf<Kernel>(v.c, p.q) * dot(own - other, p.r);
+    // Both get the same of a pair: of pressures their sum, of which twice the own is taken off in
+    // the end.
+    HD R of(const Pair<R>& p, const Pushed& own, const Pushed& other) const {
+        return mulAdd(slopeOf<Kernel>(v.c, p.q), dot(own.acceleration - other.acceleration, p.r),
+                      valueOf<Kernel>(v.c, p.q) * (own.pressure + other.pressure));
     }
     HD void finish(ICluster i) const { finish(i, load(field(), i)); }
     HD void finish(ICluster i, R fluid) const {
         const real dt2 = real(v.state->dt * v.state->dt);
-        const R change =
-            mulAdd(R(v.c.gradientScale), fluid, dot(input(i), load(v.fluid.wallGradient, i)));
+        const Pushed self = input(i);
+        const R sum = fluid - (self.pressure + self.pressure) * load(v.fluid.fluidWeight, i);
+        const R change = mulAdd(R(v.c.gradientScale), sum,
+                                dot(self.acceleration, load(v.fluid.wallGradient, i)));
         const R left = mulAdd(R(dt2 / v.c.restDensity), change, load(v.fluid.source, i));
         const R step = R(own.relaxation * v.c.restDensity / dt2) / load(v.fluid.diagonal, i);
         const R zero = 0, now = load(v.fluid.pressureOverRho2, i),
@@ -198,25 +225,37 @@ template <class Kernel, Lists which> struct RelaxPressure {
     }
 };
 
-// What is left to be solved, without signs.
+// What is left to be solved, without signs; what pressures do to densities where there are any;
+// and the work of both along the pressures, p.left, which is 0 when they are right, and p.made.
 struct SolveError {
-    double sum = 0, count = 0;
-    HD_OUT void add(const SolveError& o) { sum += o.sum, count += o.count; }
+    double sum = 0, count = 0, made = 0, workLeft = 0, workMade = 0;
+    HD_OUT void add(const SolveError& o) {
+        sum += o.sum, count += o.count, made += o.made;
+        workLeft += o.workLeft, workMade += o.workMade;
+    }
 };
 struct SumError {
     Particles p;
     HD void addTo(SolveError& e, int i) const {
-        const real left = load(p.residual, i);
-        if (p.id[i] >= 0) e.add({double(max(left, -left)), 1});
+        if (p.id[i] < 0) return;
+        const real left = load(p.residual, i), made = load(p.source, i) - left;
+        const double pressure = double(load(p.lastPressure, i));
+        e.add({double(max(left, -left)), 1, pressure > 0 ? double(max(made, -made)) : 0,
+               pressure * double(left), pressure * double(made)});
     }
 };
 
 // How the iterations of a step go: `allowed` is the mean error of density with which they end.
 struct SolveProgress {
-    double weight = 1, error = 1e300, count = 0, allowed = 0;
-    int iterations = 0, failures = 0;  // of this step; in all
+    double weight = 1, allowed = 0;
+    SolveError error{1e300};
+    int iterations = 0;  // of this step; of the run, the steps in which densities were not found,
+    int failures = 0, rough = 0;  // and in which long waves of pressure were not
     int goesOn = 1;
-    HD bool isFound() const { return error <= allowed * count; }
+    HD bool isFound() const { return error.sum <= allowed * error.count; }
+    // In deep fluid and short steps a small error of density may be all that pressures do: it is
+    // to be less than that.
+    HD bool isRough() const { return error.sum > 0.3 * error.made; }
     HD static double after(double weight) { return (1 + sqrt(1 + 4 * weight * weight)) / 2; }
 };
 // As a step takes out a share of what densities are too large by, they settle where that is what
@@ -229,9 +268,9 @@ struct BeginSolve {
     double densityError;
     SolveProgress* progress;
     HD void operator()(int) const {
-        const int failures = progress->failures;
+        const int failures = progress->failures, rough = progress->rough;
         *progress = SolveProgress{};
-        progress->failures = failures;
+        progress->failures = failures, progress->rough = rough;
         progress->allowed = 3 * densityError * double(share.now(v));
         v.state->momentum = 0;
     }
@@ -246,23 +285,39 @@ struct ChooseMomentum {
     SolveProgress* progress;
     HD void operator()(int) const {
         SolveProgress& p = *progress;
-        p.weight = error->sum > p.error ? 1 : SolveProgress::after(p.weight);
-        p.error = error->sum, p.count = error->count;
+        p.weight = error->sum > p.error.sum ? 1 : SolveProgress::after(p.weight);
+        p.error = *error;
         state->momentum = (p.weight - 1) / SolveProgress::after(p.weight);
         ++p.iterations;
-        p.goesOn = !p.isFound() && p.iterations < mostIterations;
+        p.goesOn = (!p.isFound() || p.isRough()) && p.iterations < mostIterations;
         p.failures += !p.goesOn && !p.isFound();
+        p.rough += !p.goesOn && p.isRough();
     }
 };
 
-// Where pressures were not found the next steps are shorter, by half each time.
-struct ShortenSteps {
+// Where pressures were not found the next steps are shorter, by half each time. What is left in
+// long waves, which take the most iterations, is left in pressures as a whole as well: all of them
+// times 1 + p.left / p.made have no work left to do. A quarter of that is done, in each step.
+struct EndSolve {
     using Index = int;
     StepState* state;
     const SolveProgress* progress;
     HD void operator()(int) const {
         const double share = state->share * (progress->isFound() ? 1.2 : 0.5);
         state->share = share > 1 ? 1 : share < 0.05 ? 0.05 : share;
+        const SolveError& e = progress->error;
+        const double whole = e.workMade > 0 ? e.workLeft / e.workMade : 0;
+        state->pressureScale = 1 + 0.25 * (whole > 1 ? 1 : whole < -0.5 ? -0.5 : whole);
+    }
+};
+struct ScalePressures {
+    using Index = Lanes4;
+    using R = Real<Lanes4>;
+    View v;
+    HD void operator()(Lanes4 i) const {
+        const R scale = real(v.state->pressureScale);
+        store(v.fluid.pressureOverRho2, i, scale * load(v.fluid.pressureOverRho2, i));
+        store(v.fluid.pressureAcceleration, i, scale * load(v.fluid.pressureAcceleration, i));
     }
 };
 

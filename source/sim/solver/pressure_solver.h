@@ -27,15 +27,14 @@ public:
     bool goesOn() const { return progress().goesOn != 0; }
     // The same, in memory of the device.
     const int* goesOnFlag() const { return &progress_.data()->goesOn; }
-    void shortenSteps() {
-        flow_.device.forEach(1, ShortenSteps{flow_.clock.data(), progress_.data()});
-    }
+    void end() { flow_.device.forEach(1, EndSolve{flow_.clock.data(), progress_.data()}); }
     // Of the last step.
     SolveReport report() const {
         const SolveProgress p = progress();
         SolveReport report;
-        report.iterations = p.iterations, report.failures = p.failures, report.allowed = p.allowed;
-        report.error = p.count > 0 ? p.error / p.count : 0;
+        report.iterations = p.iterations, report.failures = p.failures;
+        report.rough = p.rough, report.allowed = p.allowed;
+        report.error = p.error.count > 0 ? p.error.sum / p.error.count : 0;
         return report;
     }
 

@@ -122,7 +122,8 @@ private:
         add("relax pressure", onPairsOrFluid<RelaxPressure<K, inner>>);
         plan_.add("error", [&solver = solver_] { solver.findError(); });
         plan_.endLoop([&solver = solver_] { return !solver.goesOn(); }, solver_.goesOnFlag());
-        plan_.add("shorten steps", [&solver = solver_] { solver.shortenSteps(); });
+        plan_.add("end solve", [&solver = solver_] { solver.end(); });
+        add("scale pressures", onFluid<ScalePressures>);
         add("pressure kick", onFluid<Integrate<PressureKick>>);
         weigh(Moment::PressureSolved);
         addPartForces(Initial::No, true);

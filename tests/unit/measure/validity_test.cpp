@@ -144,6 +144,17 @@ TEST(Validity, OfAMeasurementIsSaidOnceUntilTheRunGoesBack) {
     EXPECT_TRUE(classic.remarks().empty()) << "its densities are what its masses make of them";
 }
 
+TEST(Validity, LongWavesOfPressureThatAreNotFoundAreSaid) {
+    for (const int64_t rough : {0, 12, 30, 31, 500}) {
+        Measurement m;
+        m.solvesPressure = true, m.steps = 1000, m.solve.rough = rough;
+        Validity v(sceneOf({"simulation.formulation=incompressible"}));
+        v.look(m), v.look(m);
+        ASSERT_EQ(v.remarks().size(), rough > 30 ? 1u : 0u) << rough;
+        if (rough > 30) { EXPECT_EQ(keyOf(v.remarks()[0].text), "long waves of pressure"); }
+    }
+}
+
 // Their support is their original's. (Where elastic objects hold the fluid gaps are not judged.)
 TEST(Validity, OfShippedScenesOnlyTheHistoricalHaveRemarks) {
     for (const auto& entry : std::filesystem::directory_iterator(SPINDRIFT_SOURCE_DIR "/configs")) {
