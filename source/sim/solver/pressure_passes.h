@@ -9,7 +9,8 @@
 // So an iteration asks walls for B_i alone.
 // Pressures that alternate from particle to particle push none of them: D a does not see them, and
 // what feeds them would add up from step to step. A fiftieth of a Laplacian that sees neighbours,
-// sum_j m W (p_j - p_i) / h^2, holds them together (Rhie & Chow 1983 mend the same on grids).
+// 0.4 / R^2 sum_j m W (p_j - p_i) / rho0, holds them together (Rhie & Chow 1983 mend the same on
+// grids).
 #pragma once
 
 #include "sim/neighbours/neighbours.h"
@@ -28,7 +29,7 @@ template <class Pass, class Sum> HD inline void sumAround(const Pass& pass, IClu
     pass.finish(i, total(sum));
 }
 
-// kg/m^2: the second moment of W makes sum_j of this times W (p_j - p_i) a fiftieth of the
+// kg/m^5: by W's second moment sum_j of this times w (p_j - p_i) / rho0 is a fiftieth of the
 // Laplacian.
 HD inline real evenness(const StepParameters& c) {
     return real(0.4) * c.kernelScale * c.inverseSupport2;

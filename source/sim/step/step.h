@@ -88,8 +88,7 @@ private:
         advance<Resume | HalfKick, Resume | Drift | KickOn>({"correct", "second kick", "correct"});
         end();
     }
-    // Viscosity and external forces lead to the densities of whose pressure the rest of the step
-    // is.
+    // The rest of the step has the pressure of densities that viscosity and body forces lead to.
     void split() {
         evaluateForces(Initial::Yes);
         chooseStep();
