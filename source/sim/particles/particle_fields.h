@@ -71,6 +71,7 @@ inline constexpr ParticleField particleFields[] = {
     SPINDRIFT_SCALAR(diagonal, h.solvesPressure, false, 0),
     SPINDRIFT_SCALAR(mirrored, h.solvesPressure, false, 0),
     SPINDRIFT_SCALAR(lastPressure, h.solvesPressure, false, 0),
+    SPINDRIFT_SCALAR(triedPressure, h.solvesPressure, false, 0),
     SPINDRIFT_SCALAR(fluidWeight, h.solvesPressure, false, 0),
     SPINDRIFT_SCALAR(source, h.solvesPressure, false, 0),
     SPINDRIFT_SCALAR(residual, h.solvesPressure, false, 0),

@@ -54,6 +54,7 @@ struct Particles {
     ScalarField diagonal;              // kg^2/m^8, of the operator
     ScalarField mirrored;              // share of a particle's pressure that walls beside it have
     ScalarField lastPressure;          // as pressureOverRho2, an iteration ago
+    ScalarField triedPressure;         // as pressureOverRho2, that pressureAcceleration is of
     ScalarField fluidWeight;           // sum of W over the fluid alone
     ScalarField source, residual;      // share of rho0 that densities would grow by in the step,
                                        // without pressures, and what is left of it

@@ -169,6 +169,7 @@ template <class Kernel, Lists which> struct AccelerateByPressure {
         const Vector<R> walls =
             mulAdd(pressure, load(v.fluid.mirrored, i), pressure) * load(v.fluid.wallGradient, i);
         store(field(), i, R(-v.c.gradientScale) * fluid - walls);
+        store(v.fluid.triedPressure, i, pressure);
     }
 };
 
@@ -200,7 +201,7 @@ template <class Kernel, Lists which> struct RelaxPressure {
     };
     template <class I> HD Pushed input(I i) const {
         return {load(v.fluid.pressureAcceleration, i),
-                R(own.even) * load(v.fluid.pressureOverRho2, i)};
+                R(own.even) * load(v.fluid.triedPressure, i)};
     }
     // Both get the same of a pair: of pressures their sum, of which twice the own is taken off in
     // the end.
