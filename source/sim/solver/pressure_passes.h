@@ -8,9 +8,9 @@
 // does not change as pressures do and is a force like others (Band 2018 extrapolate linearly, too).
 // So an iteration asks walls for B_i alone.
 // Pressures that alternate from particle to particle push none of them: D a does not see them, and
-// what feeds them would add up from step to step. A Laplacian that sees neighbours, L p = 0.4 / R^2
-// sum_j m W (p_j - p_i) / rho0, has a fiftieth of D a's part and holds them together (Rhie & Chow
-// 1983 mend the same on grids). For long waves both are the same, so that these stay as they were.
+// what feeds them would add up from step to step. A fiftieth of a Laplacian that sees neighbours,
+// 0.4 / R^2 sum_j m W (p_j - p_i) / rho0, holds them together (Rhie & Chow 1983 mend the same on
+// grids).
 #pragma once
 
 #include "sim/neighbours/neighbours.h"
@@ -31,9 +31,8 @@ template <class Pass, class Sum> HD inline void sumAround(const Pass& pass, IClu
 
 // kg/m^5: by W's second moment sum_j of this times w (p_j - p_i) / rho0 is a fiftieth of the
 // Laplacian.
-inline constexpr real evenShare = real(0.02);
 HD inline real evenness(const StepParameters& c) {
-    return 20 * evenShare * c.kernelScale * c.inverseSupport2;
+    return real(0.4) * c.kernelScale * c.inverseSupport2;
 }
 
 // What walls give to a particle: B_i, and the acceleration by the pressure that they have more than
@@ -201,7 +200,7 @@ template <class Kernel, Lists which> struct RelaxPressure {
         R pressure;
     };
     template <class I> HD Pushed input(I i) const {
-        return {R(1 - evenShare) * load(v.fluid.pressureAcceleration, i),
+        return {load(v.fluid.pressureAcceleration, i),
                 R(own.even) * load(v.fluid.triedPressure, i)};
     }
     // Both get the same of a pair: of pressures their sum, of which twice the own is taken off in

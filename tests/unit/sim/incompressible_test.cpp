@@ -91,17 +91,16 @@ std::vector<Vec3d> denseVelocities(const Scene& s, const RunState& state) {
         const double error = rho[i] / rho0 - 1, torn = std::min(error + 0.02, 0.0);
         source[i] += torn + share * (error - torn);
     }
-    // a_i = sum_k G_ik p_k / rho_k^2, (D a)_i = sum_j (a_i - a_j).slope_ij, 0.98 of it; and what
-    // neighbours' pressures differ by, rho0 sum_j m W (p_j - p_i) / rho^2 times 0.4 / R^2.
+    // a_i = sum_k G_ik p_k / rho_k^2, (D a)_i = sum_j (a_i - a_j).slope_ij; and what neighbours'
+    // pressures differ by, rho0 sum_j m W (p_j - p_i) / rho^2 times 0.4 / R^2.
     std::vector<Vec3d> G(n * n);
     for (size_t i = 0; i < n; ++i)
         for (size_t k = 0; k < n; ++k)
             G[i * n + k] = i == k ? -1.0 * all[i] : -1.0 * slope[i * n + k];
     for (size_t i = 0; i < n; ++i)
         for (size_t k = 0; k < n; ++k) {
-            double grown = dot(G[i * n + k], all[i]);
-            for (size_t j = 0; j < n; ++j) grown -= dot(G[j * n + k], slope[i * n + j]);
-            matrix[i * n + k] += 0.98 * grown;
+            matrix[i * n + k] += dot(G[i * n + k], all[i]);
+            for (size_t j = 0; j < n; ++j) matrix[i * n + k] -= dot(G[j * n + k], slope[i * n + j]);
             if (k == i) continue;
             const double even =
                 rho0 * kernel.mass * kernel.w(length(x[i] - x[k])) * 0.4 / (kernel.R * kernel.R);
