@@ -83,7 +83,7 @@ gpu-check: $(if $(BUNDLE),,build)
 # H100 or H200 (sm_90; BUNDLE_ARCHITECTURES for others). The window and what it drags in stay at home.
 BUNDLE_ARCHITECTURES ?= 90
 gpu-bundle: install
-	@test -f build-gpu/build.ninja || cmake -S . -B build-gpu -G Ninja --log-level=WARNING -DSPINDRIFT_WINDOW=OFF \
+	cmake -S . -B build-gpu -G Ninja --log-level=WARNING -DSPINDRIFT_WINDOW=OFF \
 		"-DSPINDRIFT_CUDA_ARCHITECTURES=$(BUNDLE_ARCHITECTURES)" '-DCMAKE_BUILD_RPATH=$$ORIGIN/lib' \
 		-DCMAKE_EXE_LINKER_FLAGS=-Wl,--disable-new-dtags $(CMAKE_ARGS)
 	@cmake --build build-gpu --target spindrift unit_tests cuda_tests cuda_sort_bench
