@@ -54,15 +54,11 @@ void checkSize(const Scene& scene, const Source& source, const std::string& path
 }
 
 void checkRates(const Rates& rates, const std::string& path) {
-    for (size_t i = 0; i < rates.size(); ++i) {
+    for (size_t i = 0; i < rates.size(); ++i)
         if (!std::isfinite(rates[i].time) || (i > 0 && rates[i].time <= rates[i - 1].time))
             refuse(path, fmt::format("row {}: t = {} s is not after the row before; put times in "
                                      "order",
                                      i + 1, rates[i].time));
-        if (!(rates[i].value >= 0))
-            refuse(path, fmt::format("row {}: {} is below 0; fluid that goes back needs a sink",
-                                     i + 1, rates[i].value));
-    }
 }
 
 void checkNumbers(const Scene& scene, const Source& source, const std::string& path) {

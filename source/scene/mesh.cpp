@@ -85,7 +85,8 @@ void Mesh::findBox() {
 
 bool Mesh::liesOnBox(const Facet& facet) const {
     const Vec3d size = high_ - low_;
-    const double near = std::max(precision_, 1e-5 * std::max({size.x, size.y, size.z}));
+    const double near = std::max(precision_, std::min(1e-5 * std::max({size.x, size.y, size.z}),
+                                                      1e-3 * std::min({size.x, size.y, size.z})));
     auto liesAt = [&](int axis, double place) {
         return std::all_of(std::begin(facet.corner), std::end(facet.corner),
                            [&](Vec3d p) { return std::abs(p[axis] - place) < near; });

@@ -146,7 +146,7 @@ void readRates(Scene& scene, const std::string& folder, const std::string& place
                 throw Error(Failure::Scene,
                             path + ": needs one column of velocity and flow, beside t");
             Rates& rates = table.has("flow") ? source.flows : source.velocities;
-            rates.clear();
+            source.velocities.clear(), source.flows.clear();
             for (size_t i = 0; i < table.rows(); ++i)
                 rates.push_back(
                     {table.at("t")[i], table.at(table.has("flow") ? "flow" : "velocity")[i]});

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <tuple>
 
 namespace spindrift {
 namespace {
@@ -138,17 +139,21 @@ TEST(Collisions, BodiesStopFluidWhereItCame) {
 TEST(Collisions, MeshesThatEndAtWallsHaveNoWayInThere) {
     for (const double thick : {0.02, 0.075})
         for (const char* motion : {"", R"(,"keyframes":[[0,0,0,0],[1,0,0.1,0]])"})
-            for (const bool periodic : {false, true}) {
+            for (const auto& [low, high, along, periodic] : {std::tuple{0.0, 1.0, 3, false},
+                                                             {0.0, 1.0, -3, true},
+                                                             {0.0, 0.7, -3, false},
+                                                             {0.3, 1.0, 3, false}}) {
                 const double end = 0.5 + thick;
                 const std::vector<Vec3d> L{{0.5, -0.15, 0}, {0.9, -0.15, 0}, {0.9, 0, 0},
                                            {end, 0, 0},     {end, 1.05, 0},  {0.5, 1.05, 0}};
-                const Scene scene = dustOf(
-                    {"solids=[" + mesh(prismSurface(L, 0, 1), "profile", motion) + "]",
-                     std::string("simulation.gravity=5,0,") + (periodic ? "-3" : "3"),
-                     std::string("domain.periodic_z=") + (periodic ? "true" : "false"),
-                     "walls.restitution=0",
-                     R"(fluid.bodies=[{"shape":"block","min":[0.3,0.4,0],"max":[0.4,0.6,1]}])"});
-                expectAll(fmt::format("{}{} {}", thick, motion, periodic), scene, 100,
+                const Scene scene =
+                    dustOf({"solids=[" + mesh(prismSurface(L, low, high), "profile", motion) + "]",
+                            fmt::format("simulation.gravity=5,0,{}", along),
+                            fmt::format("domain.periodic_z={}", periodic), "walls.restitution=0",
+                            fmt::format(R"(fluid.bodies=[{{"shape":"block","min":[0.3,0.4,{}],
+                                  "max":[0.4,0.6,{}]}}])",
+                                        low > 0 ? 0.5 : 0, high < 1 ? 0.5 : 1)});
+                expectAll(fmt::format("{}{} {} {}", thick, motion, low, high), scene, 100,
                           [](const Particle& p) { return p.position.x < 0.5005; });
             }
 }

@@ -104,6 +104,7 @@ void History::add(RunState state, const Measurement& m, const Scene& asked, cons
 
 void History::dropAfter(double time) {
     std::erase_if(moments_, [&](const Moment& m) { return m.time() > time; });
+    if (size() < 2) interval_ = 0;
 }
 
 void History::clear() {

@@ -35,6 +35,11 @@ public:
     // Whether to keep where the run stands now: enough time has passed for what that costs, and as
     // much of the run as between two others; or it was done at this step before.
     bool isDue(double time, int64_t steps) const;
+    // Whether that is nearer to the last moment than moments are after thinning: where it was done
+    // before it is done again, but not kept.
+    bool isNearTheLast(double time) const {
+        return !empty() && time < back().time() + 0.75 * interval_;
+    }
     // Until a step at which it was done before; `never`: none is ahead.
     int64_t stepsToNext(int64_t steps) const;
     static constexpr int64_t never = std::numeric_limits<int64_t>::max();

@@ -27,6 +27,7 @@ std::function<void(Simulation&)> Player::keeping() {
 void Player::takeKept() {
     const std::shared_ptr<Kept> kept = std::exchange(kept_, {});
     if (!kept || kept->seconds == 0) return;
+    if (!kept->isPresent && history_.isNearTheLast(kept->state.clock.time)) return;
     history_.add(std::move(kept->state), kept->measurement, asked_, inForce_, kept->seconds);
     if (history_.isTooSmall())
         notice = fmt::format(
@@ -40,9 +41,10 @@ bool Player::lookBack() {
     while (stepper_->busy()) stepper_->wait(1);
     bool moved = false;
     collect(moved);
-    const bool isBroken = !culprits.empty();  // its last moment stands for it
+    const bool isBroken = !halted.empty();  // its last moment stands for it
     if (halted.empty() && history_.isOn() && !history_.isTooSmall()) {
         keeping()(stepper_->simulation());
+        kept_->isPresent = true;
         takeKept();
     }
     if (history_.empty()) {
@@ -76,6 +78,7 @@ void Player::goOnLooking() {
     shown_.reset();
     beginRates();
     underWay_ = !changedKnobs(inForce_, asked_, KnobKind::Physics).empty();
+    if (underWay_) changes_.push_back({measurement_.time, *history_.back().asked});
     running = ran_;
 }
 
@@ -114,14 +117,17 @@ void Player::show(size_t moment) {
 void Player::goOnFromHere() {
     if (!shown_) return;
     while (stepper_->busy()) stepper_->wait(1);
-    if (wanted_ != *shown_) {
-        show(wanted_);
+    const std::string before = halted;
+    if (const size_t target = wanted_; target != *shown_) {
+        show(target);
+        if (*shown_ != target) return;  // it says why
         while (stepper_->busy()) stepper_->wait(1);
     }
     bool moved = false;
     collect(moved);  // knobs that were changed since
+    if (halted != before) return;
     const Moment& m = history_[*shown_];
-    const bool isPresent = *shown_ + 1 == history_.size() && culprits.empty();
+    const bool isPresent = *shown_ + 1 == history_.size() && halted.empty();
     shown_.reset();
     running = true;
     measurement_ = m.measurement;

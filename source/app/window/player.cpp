@@ -125,6 +125,8 @@ void Player::goOnWith(Formulation formulation, Backend backend) {
         throw Error(Failure::Usage,
                     "looking back: go on from here (Enter) or return to the present (Esc) first");
     while (stepper_->busy()) stepper_->wait(1);
+    bool moved = false;
+    collect(moved);
     const auto with = [&](Scene s) {
         s.simulation.formulation = formulation, s.compute.backend = backend;
         return s;

@@ -128,7 +128,8 @@ private:
     struct Kept {
         RunState state;
         Measurement measurement;
-        double seconds = 0;  // that it took
+        double seconds = 0;      // that it took
+        bool isPresent = false;  // that is looked back from: kept wherever it is
     };
 
     void begin(Loaded, bool again);

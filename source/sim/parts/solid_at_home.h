@@ -60,14 +60,16 @@ inline void goOnBeyondWalls(const Scene& scene, const Solid& solid, const Convex
         const bool starts = low[k] < near && low[k] > -dx,
                    ends = std::abs(high[k] - scene.domain.size()[k]) < dx &&
                           high[k] > scene.domain.size()[k] - near;
-        if (!staysAlong(solid, k) || (scene.domain.periodic(k) && !(starts && ends))) continue;
+        if (!(starts || ends) || !staysAlong(solid, k)) continue;
+        if (scene.domain.periodic(k) && !(starts && ends)) continue;
         const double depth = std::min(dx, 0.5 * half[k]),
                      inside = (half[k] - depth) / (shape.scale * field.spacing),
                      middle = 0.5 * (count[k] - 1);
         const int first = int(std::ceil(middle - inside)), last = int(std::floor(middle + inside));
         for (size_t node = 0; node < field.distances.size(); ++node) {
             const int at = int(node / stride[k]) % count[k],
-                      to = std::clamp(at, starts ? first : at, ends ? last : at);
+                      above = starts ? std::max(at, first) : at,
+                      to = ends ? std::min(above, last) : above;
             field.distances[node] =
                 field.distances[node + size_t(to) * stride[k] - size_t(at) * stride[k]];
         }

@@ -66,6 +66,32 @@ TEST(History, KeepsToItsBudgetAndCoversAllOfTheRunEvenly) {
     }
 }
 
+// It goes back again and again, to its beginning and to other places, and is done once more where
+// it was done before: what is kept covers the run as well as at first.
+TEST(History, CoversARunThatGoesBackAsEvenly) {
+    for (const double to : {-1.0, 0.0, 30.0, 150.0}) {
+        SCOPED_TRACE(to);
+        History history;
+        history.setBudget(5);
+        size_t first = 0;
+        for (int times = 0; times < 6; ++times) {
+            history.dropAfter(to);
+            int begin = history.empty() ? 0 : int(std::lround(10 * history.back().time())) + 1;
+            for (int i = times > 0 ? begin : 0; i < 3000; ++i) {
+                history.passed(1);
+                if (history.isDue(0.1 * i, 10 * i) && !history.isNearTheLast(0.1 * i))
+                    keep(history, 0.1 * i, 10 * i, 3000);
+            }
+            double widest = 0;
+            for (size_t i = 1; i < history.size(); ++i)
+                widest = std::max(widest, history[i].time() - history[i - 1].time());
+            if (times == 0) first = history.size();
+            EXPECT_GE(2 * history.size(), first) << times;
+            EXPECT_LE(widest, 4.5 * 300 / double(first)) << times;
+        }
+    }
+}
+
 TEST(History, KeepsNothingWhereTwoMomentsAreTooMuch) {
     History history;
     history.setBudget(0.5);
@@ -209,6 +235,7 @@ std::map<int64_t, RunState> playAndKeep(Player& player, size_t count) {
 // Goes on from a moment until it has come as far as before; returns how many moments had the same
 // bits.
 size_t sameAfter(Player& player, size_t moment, const std::map<int64_t, RunState>& before) {
+    player.scene.view.history = 100;  // room for those that had gone
     player.look(moment);
     player.goOnFromHere();
     EXPECT_FALSE(player.looksBack());
