@@ -151,6 +151,7 @@ Scene parseScene(const std::string& text, const std::string& place) {
     if (root.is_object() && !root.contains("version")) return readHistorical(root, place);
     Scene scene;
     readScene(root, scene, Place{place, ""});
+    requireOneOfRatesAndFile(scene, place);
     readTables(scene, std::filesystem::path(place).parent_path().string(), place);
     return scene;
 }

@@ -158,6 +158,15 @@ void readRates(Scene& scene, const std::string& folder, const std::string& place
     }
 }
 
+void requireOneOfRatesAndFile(const Scene& scene, const std::string& place) {
+    for (const Source& source : scene.sources)
+        if (!source.path.empty() && !(source.velocities.empty() && source.flows.empty()))
+            throw Error(Failure::Scene,
+                        fmt::format("{}: sources[{}] says more than once how much it gives; keep "
+                                    "one of velocity, flow, velocities, flows and path",
+                                    place, &source - scene.sources.data()));
+}
+
 std::vector<SourceKey> scheduleOf(const Scene& scene, const Source& source) {
     const auto rows = velocitiesOf(scene, source);
     const double end = source.stop > 0 ? double(source.stop) : 1e300;

@@ -45,6 +45,8 @@ struct SourceKey {
 // Reads each source's file (a path relative to `folder`) into its velocities or flows, and forgets
 // the path: a run that goes on needs no file. Throws Error (Scene).
 void readRates(Scene&, const std::string& folder, const std::string& place);
+// Throws Error (Scene) where a text has rates beside the file that says them.
+void requireOneOfRatesAndFile(const Scene&, const std::string& place);
 std::vector<SourceKey> scheduleOf(const Scene&, const Source&);
 double wayAt(const std::vector<SourceKey>&, double time);
 // m/s, of any of its particles at any time.

@@ -105,12 +105,14 @@ void History::add(RunState state, const Measurement& m, const Scene& asked, cons
 void History::dropAfter(double time) {
     std::erase_if(moments_, [&](const Moment& m) { return m.time() > time; });
     if (size() < 2) interval_ = 0;
+    count();
 }
 
 void History::clear() {
     moments_.clear(), walls_.clear(), keptAt_.clear();
     interval_ = passed_ = cost_ = 0;
     isTooSmall_ = false;
+    bytes_ = 0;
 }
 
 RunState History::state(size_t i) const {
@@ -127,20 +129,19 @@ size_t History::at(double time) const {
     return i == size() || time - moments_[i - 1].time() < moments_[i].time() - time ? i - 1 : i;
 }
 
-int64_t History::bytes() const {
-    int64_t bytes = bytesOf(walls_) + bytesOf(keptAt_);
+void History::count() {
+    bytes_ = bytesOf(walls_) + bytesOf(keptAt_);
     const Scene* before = nullptr;
     for (const Moment& m : moments_) {
-        bytes += bytesOf(m);
-        if (m.asked.get() != before) bytes += bytesOf(*m.asked);
-        if (m.inForce != m.asked) bytes += bytesOf(*m.inForce);
+        bytes_ += bytesOf(m);
+        if (m.asked.get() != before) bytes_ += bytesOf(*m.asked);
+        if (m.inForce != m.asked) bytes_ += bytesOf(*m.inForce);
         before = m.asked.get();
     }
-    return bytes;
 }
 
 void History::thin() {
-    while (double(bytes()) > budget_ && size() > 2) {
+    for (count(); double(bytes_) > budget_ && size() > 2; count()) {
         const double span = back().time() - moments_.front().time();
         interval_ = std::max(2 * interval_, 2 * span / double(size() - 1));
         std::vector<Moment> kept;
@@ -150,7 +151,7 @@ void History::thin() {
                 kept.push_back(std::move(m));
         moments_ = std::move(kept);
     }
-    if (double(bytes()) <= budget_) return;
+    if (double(bytes_) <= budget_) return;
     clear();
     isTooSmall_ = true;
 }

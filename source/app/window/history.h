@@ -59,17 +59,19 @@ public:
     RunState state(size_t i) const;
     // The moment that is nearest to a time, s; 0 of an empty history.
     size_t at(double time) const;
-    int64_t bytes() const;
+    int64_t bytes() const { return bytes_; }
     // Of the run's time at most goes into keeping.
     static constexpr double share = 0.02;
 
 private:
     void thin();
+    void count();
 
     std::vector<Moment> moments_;
     std::vector<Vec3> walls_;
     std::vector<int64_t> keptAt_;   // steps, of all that were ever kept, in rising order
     double budget_ = 0;             // bytes
+    int64_t bytes_ = 0;             // of all that is kept
     double interval_ = 0;           // s simulated, between moments at least
     double passed_ = 0, cost_ = 0;  // s, since the last was kept; that it took
     bool isTooSmall_ = false;

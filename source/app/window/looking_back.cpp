@@ -29,11 +29,14 @@ void Player::takeKept() {
     if (!kept || kept->seconds == 0) return;
     if (!kept->isPresent && history_.isNearTheLast(kept->state.clock.time)) return;
     history_.add(std::move(kept->state), kept->measurement, asked_, inForce_, kept->seconds);
-    if (history_.isTooSmall())
-        notice = fmt::format(
-            "the run can't be looked back at: two moments take more than "
-            "view.history, {:g} MB",
-            scene.view.history);
+    if (history_.isTooSmall()) sayTooSmall();
+}
+
+void Player::sayTooSmall() {
+    notice = fmt::format(
+        "the run can't be looked back at: two moments take more than view.history, {:g} MB; raise "
+        "it",
+        scene.view.history);
 }
 
 bool Player::lookBack() {
@@ -48,8 +51,12 @@ bool Player::lookBack() {
         takeKept();
     }
     if (history_.empty()) {
-        notice = history_.isOn() ? "there is nothing to look back at"
-                                 : "nothing is kept to look back at: view.history is 0";
+        if (!history_.isOn())
+            notice = "nothing is kept to look back at: view.history is 0";
+        else if (history_.isTooSmall())
+            sayTooSmall();
+        else
+            notice = "there is nothing to look back at";
         return false;
     }
     ran_ = std::exchange(running, false);

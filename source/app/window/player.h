@@ -135,6 +135,7 @@ private:
     void begin(Loaded, bool again);
     std::function<void(Simulation&)> keeping();
     void takeKept();
+    void sayTooSmall();
     void show(size_t moment);
     void goOnLooking();
     void dropAfter(double time);

@@ -39,7 +39,10 @@ std::string fileStem(const std::string& sceneName) {
             stem += '_';
     }
     while (stem.ends_with('_')) stem.pop_back();
-    return stem.empty() ? "run" : stem.substr(0, 100);
+    // Not within a letter of several bytes.
+    size_t length = std::min<size_t>(stem.size(), 100);
+    while (length < stem.size() && (stem[length] & 0xc0) == 0x80) --length;
+    return stem.empty() ? "run" : stem.substr(0, length);
 }
 
 Recording::Recording(const Scene& scene, double time, int width, int height,

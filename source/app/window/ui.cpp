@@ -270,8 +270,8 @@ void Ui::take(const Remedy& remedy) {
         case Remedy::How::Again:
             return player.beginAnew(remedy.scene);
         case Remedy::How::GoOn:
-            if (!player.looksBack()) endRecording();  // its series would get other columns
             player.goOnWith(remedy.scene.simulation.formulation, player.scene.compute.backend);
+            endRecording();  // its series would get other columns
             noteDevice();
             return say("goes on, and solves for pressures");
         case Remedy::How::Live:

@@ -298,6 +298,23 @@ TEST(LookingBack, RunGoesOnFromAnyMomentWithTheBitsThatItHad) {
     }
 }
 
+// What a history keeps nothing of for want of room is said as that, whenever it is asked for.
+TEST(LookingBack, SaysWhyThereIsNothing) {
+    for (const float budget : {0.0f, 0.001f}) {
+        Scene scene = loadScene(Configs + "dam_break.json");
+        scene.view.history = budget;
+        Player player(ready(scene));
+        ASSERT_TRUE(play(player, [&] { return player.measurement().steps > 40; }));
+        for (int again = 0; again < 2; ++again) {
+            player.notice.clear();
+            EXPECT_FALSE(player.lookBack());
+            EXPECT_NE(player.notice.find(budget == 0 ? "view.history is 0" : "two moments take"),
+                      std::string::npos)
+                << player.notice;
+        }
+    }
+}
+
 // With local steps, which a restart would wake: it would take them hundreds of steps to rest again.
 TEST(LookingBack, FluidThatRestsIsNotWokenByWhatIsKept) {
     Scene scene;

@@ -137,6 +137,16 @@ TEST(FileStem, IsAFileName) {
               "Stra\xc3\x9f"
               "e_2");
     EXPECT_LE(fileStem(std::string(5000, 'a')).size(), 100u);
+    // Cut between letters, however many bytes they have.
+    for (const std::string letter : {"\xc3\x9f", "\xe6\xb0\xb4", "\xf0\x9f\x8c\x8a"})
+        for (size_t before = 0; before < 4; ++before) {
+            std::string name(before, 'a');
+            while (name.size() < 200) name += letter;
+            const std::string stem = fileStem(name);
+            EXPECT_EQ((stem.size() - before) % letter.size(), 0u) << letter << before;
+            EXPECT_GT(stem.size(), 100 - letter.size());
+            EXPECT_LE(stem.size(), 100u);
+        }
 }
 
 }  // namespace

@@ -196,5 +196,28 @@ TEST(SourceChecks, RefuseWhatCannotBe) {
     EXPECT_NO_THROW(checkScene(sceneWith({with(""), "fluid.bodies=[]"}), "here"));
 }
 
+// A file of rates beside rates, whichever comes first in the text; a new file alone replaces them.
+TEST(Sources, SayOnceHowMuchTheyGive) {
+    const TableFile file("t,flow\n0,1\n");
+    const std::string path = "\"path\":\"" + file.path.string() + "\"";
+    const auto sceneOf = [](const std::string& source) {
+        return parseScene(R"({"version":1,"sources":[{)" + source + "}]}", "here");
+    };
+    for (const std::string rates : {R"("velocities":[[0,1]])", R"("flows":[[0,2]])"})
+        for (const std::string& both : {rates + "," + path, path + "," + rates}) try {
+                sceneOf(both);
+                ADD_FAILURE() << both << " was taken";
+            } catch (const Error& error) {
+                EXPECT_NE(std::string(error.what()).find("here: sources[0] says more than once"),
+                          std::string::npos)
+                    << error.what();
+            }
+    Scene scene = sceneOf(R"("velocities":[[0,1]])");
+    setKnob(scene, "sources[0].path=" + file.path.string());
+    EXPECT_TRUE(scene.sources[0].velocities.empty());
+    ASSERT_EQ(scene.sources[0].flows.size(), 1u);
+    EXPECT_EQ(scene.sources[0].flows[0].value, 1);
+}
+
 }  // namespace
 }  // namespace spindrift
