@@ -220,3 +220,4 @@ std::unique_ptr<Simulation> makeSimulation(const Scene&, const RunState&);
 std::string whyNoGpu(const Scene&);
 
 }  // namespace spindrift
+std::string whyNotForGpus(const Scene&);

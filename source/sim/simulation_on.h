@@ -64,6 +64,8 @@ public:
     void apply(const Scene& scene) override {
         refresh(scene);
         flow_.fillMixture();
+        if (const std::string why = whyNotForGpus(scene); Device::recordsSteps && !why.empty())
+            throw Error(Failure::NoDevice, why + "; or use --backend cpu");
         blocks_.wake();
     }
     void stir(const Stir& s) override {
