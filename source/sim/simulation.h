@@ -185,11 +185,13 @@ public:
     // of the fluid's values. Boundary value: 1 of a solid, 0 of the domain's walls, of objects 2 +
     // their radius / that of a fluid particle.
     virtual Range writeVertices(VertexMemory out, ColorBy, int walls) = 0;
-    // The number of the CUDA device that steps, or hostMemory (-1).
+    // The number of the CUDA device that steps, or hostMemory (-1); and the cudaStream_t that its
+    // work is on, or null.
     virtual int cudaDevice() const = 0;
 };
 
 class Profiled {
+    virtual void* cudaStream() const = 0;
 public:
     virtual ~Profiled() = default;
 

@@ -172,6 +172,7 @@ private:
         return std::tie(sources_, tension_, mixing_, solids_, floating_, objects_, resistance_,
                         blocks_, energy_);
     }
+    void* cudaStream() const override { return flow_.device.stream(); }
     void refresh(const Scene& scene) {
         const bool halfListsBefore = flow_.usesHalfLists();
         flow_.scene = scene;

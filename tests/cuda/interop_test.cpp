@@ -49,6 +49,7 @@ public:
     Range writeVertices(VertexMemory out, ColorBy by, int walls) override {
         EXPECT_EQ(out.device, hostMemory);
         return s_.writeVertices(out, by, walls);
+    void* cudaStream() const override { return nullptr; }
     }
     void step(int n) override { s_.step(n); }
     void apply(const Scene& scene) override { s_.apply(scene); }

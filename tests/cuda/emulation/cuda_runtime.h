@@ -134,6 +134,8 @@ void runGrid(dim3 grid, dim3 block, const std::function<void()>& thread);
 
 template <class Kernel> cudaError_t cudaFuncGetAttributes(cudaFuncAttributes*, Kernel*) {
     return emulation::codeForDevice();
+// All of it, now.
+void finish(cudaStream_t);
 }
 
 template <class... Parameters, class... Arguments>

@@ -150,6 +150,10 @@ void runGrid(dim3 grid, dim3 block, const Work& thread) {
 
 }  // namespace emulation
 
+void finish(cudaStream_t s) {
+    if (!machine.lost) drain(s);
+}
+
 using namespace emulation;
 
 void __syncthreads() {
