@@ -157,7 +157,6 @@ void* Cuda::allocateBytes(size_t bytes) {
     void* memory = nullptr;
     requireCuda(cudaMalloc(&memory, std::max<size_t>(bytes, 1)), "making room for particles");
     bytes_ += int64_t(bytes);
-    clear(memory, bytes);
     return memory;
 }
 
@@ -172,6 +171,7 @@ void Cuda::release(void* p, size_t bytes) {
 void Cuda::copy(void* to, const void* from, size_t bytes, cudaMemcpyKind kind) const {
     if (bytes == 0) return;
     CHECK(!recording_);
+    ++layout_;
     activate();
     requireCuda(cudaMemcpyAsync(to, from, bytes, kind, stream_), "copying");
     requireCuda(cudaStreamSynchronize(stream_), "stepping");
@@ -227,7 +227,7 @@ CudaRecording::~CudaRecording() {
 }
 
 bool Cuda::replay(Recording& recording) {
-    if (!recording.current_) return false;
+    if (!recording.current_ || recording.layout_ != layout_) return false;
     activate();
     requireCuda(cudaGraphLaunch(recording.graph_, stream_), "starting a step");
     return true;
@@ -263,7 +263,7 @@ void Cuda::endRecording(Recording& recording) {
         recording.graph_ ? cudaSuccess : cudaGraphInstantiate(&recording.graph_, graph, 0);
     cudaGraphDestroy(graph);
     requireCuda(made, "recording a step");
-    recording.current_ = true;
+    recording.current_ = true, recording.layout_ = layout_;
     replay(recording);
 }
 

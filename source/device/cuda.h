@@ -76,13 +76,36 @@ public:
     ~CudaRecording();
     CudaRecording(const CudaRecording&) = delete;
     CudaRecording& operator=(const CudaRecording&) = delete;
-    // What was recorded no longer holds: constants, plan or buffers have changed.
+    // What was recorded no longer holds: constants or the plan have changed. (When memory is given
+    // back that it may use, the device knows.)
     void outdate() { current_ = false; }
 
 private:
     friend class Cuda;
     cudaGraphExec_t graph_ = nullptr;
     bool current_ = false;
+    int64_t layout_ = 0;
+};
+
+// Memory of the host that a GPU reads and writes by itself, for copies under way.
+class PinnedMemory {
+public:
+    PinnedMemory() = default;
+    ~PinnedMemory();
+    PinnedMemory(const PinnedMemory&) = delete;
+    PinnedMemory& operator=(const PinnedMemory&) = delete;
+    void* take(size_t bytes);
+    // All of it: no copy is under way.
+    void giveBack();
+    size_t taken() const { return taken_; }
+
+private:
+    struct Block {
+        char* memory;
+        size_t bytes;
+    };
+    std::vector<Block> blocks_;    // each twice as large as the one before
+    size_t used_ = 0, taken_ = 0;  // bytes of the last one; of all
 };
 
 class Cuda {
@@ -97,7 +120,7 @@ public:
     cudaStream_t stream() const { return stream_; }
     int64_t bytes() const { return bytes_; }  // held by buffers
 
-    // Zeroed memory. Throws Error (Memory).
+    // Memory full of anything. Throws Error (Memory).
     template <class T> T* allocate(size_t n) {
         return static_cast<T*>(allocateBytes(n * sizeof(T)));
     }
@@ -260,3 +283,4 @@ private:
 };
 
 }  // namespace spindrift
+    int64_t layout_ = 0;  // grows when memory is given back: what was recorded may use it

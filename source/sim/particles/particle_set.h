@@ -184,7 +184,7 @@ public:
         const std::vector<float> points = inOrder(&Particles::heldBy);
         return {points.begin(), points.end()};
     }
-    // Where they are solved for, p / rho^2 in the order of the upload just done.
+    // p / rho^2 in the order of the upload just done, 0 of those behind.
     void setPressures(const std::vector<float>& pressures) {
         std::vector<real> values(pressures.begin(), pressures.end());
         values.resize(size_t(slots_), 0);

@@ -76,6 +76,8 @@ public:
         keepMasses(flow_.walls.view());
         moves_ = true;
         flow_.walls.accelerate();
+        flow_.search.sortWalls(
+            flow_.walls);  // into the order that they have: makes room for others
         return true;
     }
     // How those that float or are dragged move; not owned.

@@ -173,7 +173,10 @@ template <class Device> struct Flow {
         p.ids.empty() ? fluid.upload(p.positions, p.velocities, densitiesOf(state), 0)
                       : fluid.upload(p.positions, p.velocities, densitiesOf(state), p.ids);
     }
-    void uploadWalls() { walls.upload(wallsAtHome, {}, {}, fluidCount); }
+    void uploadWalls() {
+        walls.upload(wallsAtHome, {}, {}, fluidCount);
+        walls.setPressures({});  // the classic formulation's keep none
+    }
     void addBuffers() {
         fluid.addForces(usesHalfLists() && hasMixingForces(scene),
                         scene.fluid.surfaceTension > 0 || showsFound);

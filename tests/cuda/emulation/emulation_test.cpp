@@ -3,6 +3,7 @@
 #include "app/frame_bench.h"
 #include "core/error.h"
 #include "cuda/gpu.h"
+#include "device/cuda.h"
 #include "emulation.h"
 #include "sim/make_simulation.h"
 
@@ -171,6 +172,14 @@ TEST_F(EmulatedGpu, BenchmarkOfFramesAndSwitchingWorks) {
     EXPECT_EQ(row["vertices"], "written in place");
     for (const char* key : {"particles", "frame_ms", "switch_to_cpu_ms", "switch_back_ms"})
         EXPECT_GT(row[key], 0) << key;
+}
+
+// What reads memory before it is written shows in every test.
+TEST_F(EmulatedGpu, FreshMemoryIsNoNumber) {
+    Cuda device(0);
+    Buffer<float, Cuda> buffer(device);
+    buffer.resize(100);
+    for (const float x : buffer.download()) EXPECT_TRUE(std::isnan(x));
 }
 
 // The emulation itself: it must notice what it is there to notice.
