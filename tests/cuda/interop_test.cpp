@@ -59,7 +59,7 @@ public:
     int solidAt(Vec3d point) override { return s_.solidAt(point); }
     void drive(ObjectDriver* driver) override { s_.drive(driver); }
     void stopAt(double time) override { s_.stopAt(time); }
-    int fluidCount() const override { return s_.fluidCount(); }
+    int fluidCount() override { return s_.fluidCount(); }
     int wallCount() const override { return s_.wallCount(); }
     int solidParticleCount() const override { return s_.solidParticleCount(); }
     int objectParticleCount() const override { return s_.objectParticleCount(); }
@@ -67,6 +67,7 @@ public:
     Measurement measure() override { return s_.measure(); }
     std::vector<Particle> particles() override { return s_.particles(); }
     std::optional<Particle> find(int id) override { return s_.find(id); }
+    bool hasReached(double time) override { return s_.hasReached(time); }
     Particle particle(int id) override { return s_.particle(id); }
     RunState state() override { return s_.state(); }
     void restart(const RunState& state) override { s_.restart(state); }
@@ -134,6 +135,28 @@ TEST_F(Interop, RegistersOnceAndMapsOncePerFrame) {
 TEST_F(Interop, WhereGlRunsElsewhereVerticesAreCopied) {
     emulation::machine.drawsToo = false;
     Frame frame(200, 150, 1);
+// After steps that have been waited for: the range of what is shown, and how it is spread.
+TEST_F(Interop, APictureIsWaitedForOnce) {
+    for (const char* file : {"dam_break_small.json", "solids_small.json", "floating_small.json",
+                             "tap_small.json", "artery_small.json"}) {
+        SCOPED_TRACE(file);
+        Scene other = testScene(file);
+        other.compute.backend = Backend::Cuda;
+        const auto run = makeSimulation(other);
+        Frame frame(200, 150, 1);
+        for (int k = 0; k < 4; ++k) run->step(), frame.update(*run, other);
+        for (ColorBy by : {ColorBy::Plain, ColorBy::Velocity, ColorBy::Density}) {
+            other.view.colorBy = by;
+            run->step();
+            run->wait();
+            const emulation::Counts c =
+                emulation::countsOf([&] { frame.update(*run, other), frame.draw(other); });
+            EXPECT_EQ(c.waits, 1);
+            EXPECT_EQ(emulation::countsOf([&] { run->step(4); }).waits, 0);
+        }
+    }
+}
+
     simulation->step(3);
     frame.update(*simulation, scene);
     frame.draw(scene);
