@@ -8,6 +8,10 @@
 #include "sim/particles/sort_passes.h"
 #include "sim/physics/time_step.h"
 
+#ifdef SPINDRIFT_EMULATED_GPU
+#include "emulation.h"
+#endif
+
 #include <gtest/gtest.h>
 
 #include <numeric>
@@ -155,10 +159,6 @@ TYPED_TEST(Devices, ParticlesThatAreNowhereAreSpreadOverTheCells) {
     EXPECT_LT(keys.back(), 20 * 10 * 10);
 }
 
-TEST(CudaVertices, DeviceMemoryAndHostGetTheSame) {
-    NEED_GPU();
-    const Scene scene = testScene("ball_drop_small.json");
-    const auto simulation = makeCudaSimulation(scene, placeParticles(scene), 0);
 // What was recorded would go on using memory that has been given back.
 TEST(CudaRecordings, DontOutliveWhatTheyUse) {
     NEED_GPU();
@@ -231,6 +231,10 @@ TEST(Gpu, MemoryThatRunsOutIsOneLineAndTheNextRunGoes) {
 #endif
 }
 
+TEST(CudaVertices, DeviceMemoryAndHostGetTheSame) {
+    NEED_GPU();
+    const Scene scene = testScene("ball_drop_small.json");
+    const auto simulation = makeCudaSimulation(scene, placeParticles(scene), 0);
     simulation->step(5);
     for (int walls : {0, simulation->wallCount()}) {
         const size_t n = size_t(simulation->fluidCount() + walls);

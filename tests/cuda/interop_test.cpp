@@ -10,6 +10,7 @@
 #endif
 
 #include <algorithm>
+#include <cstdio>
 
 namespace spindrift {
 namespace {
@@ -19,6 +20,8 @@ protected:
     void SetUp() override {
         NEED_GPU();
         static EglContext context(0);
+        static const int said = std::printf("OpenGL: %s\n", glName().c_str());
+        EXPECT_GT(said, 0);
         if (drawingDevice() != 0)
             GTEST_SKIP() << "skipped: OpenGL (" << glName() << ") draws elsewhere";
         scene.compute.backend = Backend::Cuda;
@@ -46,10 +49,10 @@ class ThroughHost final : public Simulation {
 public:
     explicit ThroughHost(Simulation& s) : s_(s) {}
     int cudaDevice() const override { return hostMemory; }
+    void* cudaStream() const override { return nullptr; }
     Range writeVertices(VertexMemory out, ColorBy by, int walls) override {
         EXPECT_EQ(out.device, hostMemory);
         return s_.writeVertices(out, by, walls);
-    void* cudaStream() const override { return nullptr; }
     }
     void step(int n) override { s_.step(n); }
     void apply(const Scene& scene) override { s_.apply(scene); }
@@ -64,10 +67,10 @@ public:
     int solidParticleCount() const override { return s_.solidParticleCount(); }
     int objectParticleCount() const override { return s_.objectParticleCount(); }
     StepState clock() override { return s_.clock(); }
+    bool hasReached(double time) override { return s_.hasReached(time); }
     Measurement measure() override { return s_.measure(); }
     std::vector<Particle> particles() override { return s_.particles(); }
     std::optional<Particle> find(int id) override { return s_.find(id); }
-    bool hasReached(double time) override { return s_.hasReached(time); }
     Particle particle(int id) override { return s_.particle(id); }
     RunState state() override { return s_.state(); }
     void restart(const RunState& state) override { s_.restart(state); }
@@ -132,9 +135,6 @@ TEST_F(Interop, RegistersOnceAndMapsOncePerFrame) {
     EXPECT_EQ(emulation::counts.registrations, before.registrations + 1);
 }
 
-TEST_F(Interop, WhereGlRunsElsewhereVerticesAreCopied) {
-    emulation::machine.drawsToo = false;
-    Frame frame(200, 150, 1);
 // After steps that have been waited for: the range of what is shown, and how it is spread.
 TEST_F(Interop, APictureIsWaitedForOnce) {
     for (const char* file : {"dam_break_small.json", "solids_small.json", "floating_small.json",
@@ -157,6 +157,9 @@ TEST_F(Interop, APictureIsWaitedForOnce) {
     }
 }
 
+TEST_F(Interop, WhereGlRunsElsewhereVerticesAreCopied) {
+    emulation::machine.drawsToo = false;
+    Frame frame(200, 150, 1);
     simulation->step(3);
     frame.update(*simulation, scene);
     frame.draw(scene);

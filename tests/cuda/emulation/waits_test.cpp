@@ -190,5 +190,36 @@ TEST_F(Waits, OneForAStateAndForALook) {
     }
 }
 
+// Kernels, of a step and of each iteration for pressures: a GPU needs some microseconds for each,
+// which is what a step of few particles takes.
+struct Kernels {
+    double step = 0, iteration = 0;
+};
+Kernels kernelsOf(Scene scene) {
+    const auto kernels = [&](int iterations) {
+        scene.solver.iterations = iterations, scene.solver.densityError = 1e-6f;
+        const auto gpu = makeCudaSimulation(scene, placeParticles(scene), 0);
+        gpu->step(3), gpu->wait();
+        return double(countsOf([&] { gpu->timeSteps(10); }).kernels) / 10;
+    };
+    const double two = kernels(2), each = (kernels(4) - two) / 2;
+    return {two - 2 * each, each};
+}
+
+TEST_F(Waits, KernelsOfAStepAreFew) {
+    std::printf("%-24s %8s %10s\n", "kernels", "a step", "iteration");
+    for (const char* file :
+         {"1.json", "2.json", "3.json", "dam_break.json", "double_dam_break.json", "ball_drop.json",
+          "pool_drop.json", "still_pool.json"}) {
+        std::printf("%-24s %8.0f %10.0f\n", file, k.step, k.iteration);
+        if (scene.simulation.formulation == Formulation::Incompressible) {
+            EXPECT_LE(k.step, scene.solids.empty() && scene.objects.empty() ? 21 : 25) << file;
+            EXPECT_LE(k.iteration, 6) << file;
+        } else {
+            EXPECT_LE(k.step, 15) << file;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace spindrift
