@@ -34,7 +34,7 @@ template <class Enum> const char* nameOf(Enum value) { return enumNames(value)[s
 
 }  // namespace
 
-std::string particlesOf(const Simulation& s) {
+std::string particlesOf(Simulation& s) {
     const std::string counts = fmt::format("{} fluid, {} boundary", s.fluidCount(), s.wallCount());
     return s.objectParticleCount() > 0
                ? fmt::format("{}, {} of objects", counts, s.objectParticleCount())

@@ -12,6 +12,6 @@ namespace spindrift {
 int explain(const Scene&);
 
 // "5520 fluid, 5316 boundary, 3040 of objects"
-std::string particlesOf(const Simulation&);
+std::string particlesOf(Simulation&);
 
 }  // namespace spindrift

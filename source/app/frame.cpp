@@ -170,7 +170,7 @@ void Frame::begin(const Scene& scene) {
 }
 
 Range Frame::write(Simulation& simulation, ColorBy by) {
-    const VertexMemory memory = vertices_.map(simulation.cudaDevice());
+    const VertexMemory memory = vertices_.map(simulation.cudaDevice(), simulation.cudaStream());
     copied_ = memory.device != simulation.cudaDevice();
     try {
         const Range range = simulation.writeVertices(memory, by, wallCount_);

@@ -204,7 +204,7 @@ private:
         simulation_->step();
         ++steps_, ++made_;
         const bool look = steps_ % HealthInterval == 0 || steps_ == endStep_ ||
-                          (stop < never && isReached(stop, simulation_->clock().time));
+                          (stop < never && simulation_->hasReached(stop));
         if (look) simulation_->wait();
         stepSeconds_ +=
             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

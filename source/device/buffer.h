@@ -1,5 +1,6 @@
 #pragma once
-// Memory of one device. Grows, never shrinks; growing does not keep the contents.
+// Memory of one device. Grows, never shrinks; growing does not keep the contents. Only the host's
+// is zeroed when it is new.
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -34,6 +35,12 @@ public:
     std::vector<T> download() const {
         std::vector<T> host(size_);
         device_->download(host.data(), data_, size_);
+        return host;
+    }
+    // There once the device has been waited for.
+    std::vector<T> fetch() const {
+        std::vector<T> host(size_);
+        device_->fetch(host.data(), data_, size_);
         return host;
     }
     T* data() const { return data_; }

@@ -3,6 +3,7 @@
 #include <cub/device/device_scan.cuh>
 
 #include <algorithm>
+#include <cstring>
 
 namespace spindrift {
 
@@ -130,20 +131,25 @@ Cuda::Cuda(int index) : Cuda(index, Nothing{}) {
     activate();
     requireCuda(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "making a stream");
     scratch_ = allocateBytes(scratchBytes);
+    requireCuda(cudaMallocHost(&glanced_, glanceBytes), "making room for copies");
+    requireCuda(cudaEventCreate(&glanceMade_), "measuring time");
 }
 
 Cuda::Cuda(Cuda&& other) noexcept
     : index_(other.index_),
       stream_(std::exchange(other.stream_, nullptr)),
       scratch_(std::exchange(other.scratch_, nullptr)),
-      bytes_(other.bytes_) {}
+      bytes_(other.bytes_),
+      glanced_(std::exchange(other.glanced_, nullptr)),
+      glanceMade_(std::exchange(other.glanceMade_, nullptr)) {}
 
 // Errors are of no use here: a device that was lost has lost its memory too.
 Cuda::~Cuda() {
     if (!stream_) return;
     cudaSetDevice(index_);
     cudaStreamSynchronize(stream_);
-    cudaFree(scratch_), cudaFree(sortSpace_);
+    cudaFree(scratch_), cudaFree(sortSpace_), cudaFreeHost(glanced_);
+    if (glanceMade_) cudaEventDestroy(glanceMade_);
     for (const Span& s : spans_) cudaEventDestroy(s.begin), cudaEventDestroy(s.end);
     for (cudaEvent_t event : idle_) cudaEventDestroy(event);
     cudaStreamDestroy(stream_);
@@ -157,7 +163,6 @@ void* Cuda::allocateBytes(size_t bytes) {
     void* memory = nullptr;
     requireCuda(cudaMalloc(&memory, std::max<size_t>(bytes, 1)), "making room for particles");
     bytes_ += int64_t(bytes);
-    clear(memory, bytes);
     return memory;
 }
 
@@ -166,25 +171,98 @@ void Cuda::release(void* p, size_t bytes) {
     CHECK(!recording_);
     cudaSetDevice(index_);
     cudaFree(p);  // waits for the work that may still use it
+    ++layout_;
     bytes_ -= int64_t(bytes);
 }
 
-void Cuda::copy(void* to, const void* from, size_t bytes, cudaMemcpyKind kind) const {
+// --- copies ---
+
+PinnedMemory::~PinnedMemory() {
+    for (const Block& block : blocks_) cudaFreeHost(block.memory);
+}
+
+void* PinnedMemory::take(size_t bytes) {
+    constexpr size_t first = 64 << 10, aligned = 16;
+    bytes = (bytes + aligned - 1) / aligned * aligned;
+    if (blocks_.empty() || used_ + bytes > blocks_.back().bytes) {
+        const size_t size = std::max(blocks_.empty() ? first : 2 * blocks_.back().bytes, bytes);
+        void* memory = nullptr;
+        requireCuda(cudaMallocHost(&memory, size), "making room for copies");
+        blocks_.push_back({static_cast<char*>(memory), size});
+        used_ = 0;
+    }
+    taken_ += bytes;
+    return blocks_.back().memory + std::exchange(used_, used_ + bytes);
+}
+
+void PinnedMemory::giveBack() {
+    used_ = taken_ = 0;
+    if (blocks_.size() < 2) return;
+    for (size_t k = 0; k + 1 < blocks_.size(); ++k) cudaFreeHost(blocks_[k].memory);
+    blocks_ = {blocks_.back()};
+}
+
+// What is larger takes longer to be copied than the host loses by waiting for it, and is not to be
+// held twice.
+static constexpr size_t mostPinned = 4 << 20, mostUnderWay = 64 << 20;
+
+void Cuda::send(void* to, const void* from, size_t bytes) {
     if (bytes == 0) return;
     CHECK(!recording_);
+    if (pinned_.taken() > mostUnderWay) wait();
     activate();
-    requireCuda(cudaMemcpyAsync(to, from, bytes, kind, stream_), "copying");
-    requireCuda(cudaStreamSynchronize(stream_), "stepping");
+    busy_ = true;
+    const bool goesBy = bytes <= mostPinned;
+    if (goesBy) from = std::memcpy(pinned_.take(bytes), from, bytes);
+    requireCuda(cudaMemcpyAsync(to, from, bytes, cudaMemcpyHostToDevice, stream_), "copying");
+    if (!goesBy) wait();
+}
+
+void Cuda::bring(void* to, const void* from, size_t bytes) const {
+    if (bytes == 0) return;
+    CHECK(!recording_);
+    if (pinned_.taken() > mostUnderWay) wait();
+    activate();
+    busy_ = true;
+    try {
+        void* by = bytes <= mostPinned ? pinned_.take(bytes) : to;
+        requireCuda(cudaMemcpyAsync(by, from, bytes, cudaMemcpyDeviceToHost, stream_), "copying");
+        if (by != to) landings_.push_back({to, by, bytes});
+    } catch (...) {  // whoever asked for the others may no longer be there
+        landings_.clear();
+        throw;
+    }
+}
+
+void Cuda::wait() const {
+    if (!busy_) return;
+    activate();
+    const cudaError_t done = cudaStreamSynchronize(stream_);
+    const std::vector<Landing> landings = std::exchange(landings_, {});
+    requireCuda(done, "stepping");
+    for (const Landing& l : landings) std::memcpy(l.to, l.from, l.bytes);
+    pinned_.giveBack();
+    busy_ = false;
+}
+
+bool Cuda::glance(void* to, const void* from, size_t bytes) {
+    activate();
+    if (glanceAsked_) {
+        const cudaError_t made = cudaEventQuery(glanceMade_);
+        if (made == cudaErrorNotReady) return false;
+        requireCuda(made, "stepping");
+        std::memcpy(to, glanced_, bytes);
+    }
+    const bool came = std::exchange(glanceAsked_, true);
+    requireCuda(cudaMemcpyAsync(glanced_, from, bytes, cudaMemcpyDeviceToHost, stream_), "copying");
+    requireCuda(cudaEventRecord(glanceMade_, stream_), "copying");
+    return came;
 }
 
 void Cuda::clear(void* memory, size_t bytes) {
     activate();
+    busy_ = true;
     requireCuda(cudaMemsetAsync(memory, 0, bytes, stream_), "clearing memory");
-}
-
-void Cuda::wait() const {
-    activate();
-    requireCuda(cudaStreamSynchronize(stream_), "stepping");
 }
 
 int Cuda::sortByCell(int n, const int* key, int rows, int rowLength, int pad, int* cellStart,
@@ -227,8 +305,9 @@ CudaRecording::~CudaRecording() {
 }
 
 bool Cuda::replay(Recording& recording) {
-    if (!recording.current_) return false;
+    if (!recording.current_ || recording.layout_ != layout_) return false;
     activate();
+    busy_ = true;
     requireCuda(cudaGraphLaunch(recording.graph_, stream_), "starting a step");
     return true;
 }
@@ -263,7 +342,7 @@ void Cuda::endRecording(Recording& recording) {
         recording.graph_ ? cudaSuccess : cudaGraphInstantiate(&recording.graph_, graph, 0);
     cudaGraphDestroy(graph);
     requireCuda(made, "recording a step");
-    recording.current_ = true;
+    recording.current_ = true, recording.layout_ = layout_;
     replay(recording);
 }
 
@@ -330,6 +409,7 @@ cudaEvent_t Cuda::mark() {
         idle_.pop_back();
     }
     requireCuda(cudaEventRecord(event, stream_), "measuring time");
+    busy_ = true;
     return event;
 }
 

@@ -1,8 +1,8 @@
 #pragma once
-// One NVIDIA GPU: its memory, and its kernels on one stream. The host waits only where it reads
-// something. Results don't depend on the order in which threads run: loops write their own elements
-// only, the sort is stable, sums go by a fixed tree, and the only atomic operations add integers.
-// Compiled by nvcc, and by the host compiler over the emulation of tests/cuda.
+// One NVIDIA GPU: its memory, and its kernels on one stream. The host waits only where it wants to
+// know something at once. Results don't depend on the order in which threads run: loops write their
+// own elements only, the sort is stable, sums go by a fixed tree, and the only atomic operations
+// add integers. Compiled by nvcc, and by the host compiler over the emulation of tests/cuda.
 #include "core/error.h"
 #include "core/pass_time.h"
 #include "device/buffer.h"
@@ -76,13 +76,36 @@ public:
     ~CudaRecording();
     CudaRecording(const CudaRecording&) = delete;
     CudaRecording& operator=(const CudaRecording&) = delete;
-    // What was recorded no longer holds: constants, plan or buffers have changed.
+    // What was recorded no longer holds: constants or the plan have changed. (When memory is given
+    // back that it may use, the device knows.)
     void outdate() { current_ = false; }
 
 private:
     friend class Cuda;
     cudaGraphExec_t graph_ = nullptr;
     bool current_ = false;
+    int64_t layout_ = 0;
+};
+
+// Memory of the host that a GPU reads and writes by itself, for copies under way.
+class PinnedMemory {
+public:
+    PinnedMemory() = default;
+    ~PinnedMemory();
+    PinnedMemory(const PinnedMemory&) = delete;
+    PinnedMemory& operator=(const PinnedMemory&) = delete;
+    void* take(size_t bytes);
+    // All of it: no copy is under way.
+    void giveBack();
+    size_t taken() const { return taken_; }
+
+private:
+    struct Block {
+        char* memory;
+        size_t bytes;
+    };
+    std::vector<Block> blocks_;    // each twice as large as the one before
+    size_t used_ = 0, taken_ = 0;  // bytes of the last one; of all
 };
 
 class Cuda {
@@ -97,17 +120,30 @@ public:
     cudaStream_t stream() const { return stream_; }
     int64_t bytes() const { return bytes_; }  // held by buffers
 
-    // Zeroed memory. Throws Error (Memory).
+    // Memory full of anything. Throws Error (Memory).
     template <class T> T* allocate(size_t n) {
         return static_cast<T*>(allocateBytes(n * sizeof(T)));
     }
     void release(void* p, size_t bytes);
+    // In the order of the work that is asked for; `from` may change at once.
     template <class T> void upload(T* to, const T* from, size_t n) {
-        copy(to, from, n * sizeof(T), cudaMemcpyHostToDevice);
+        send(to, from, n * sizeof(T));
+    }
+    // The next wait() fills `to`: so what is wanted together is waited for once.
+    template <class T> void fetch(T* to, const T* from, size_t n) const {
+        bring(to, from, n * sizeof(T));
     }
     template <class T> void download(T* to, const T* from, size_t n) const {
-        copy(to, from, n * sizeof(T), cudaMemcpyDeviceToHost);
+        fetch(to, from, n);
+        wait();
     }
+    // True: `to` is what *from was some work ago. Nobody waits for it; one value can be looked at
+    // so.
+    template <class T> bool glance(T* to, const T* from) {
+        static_assert(sizeof(T) <= glanceBytes);
+        return glance(to, from, sizeof(T));
+    }
+    void dropGlance() { glanceAsked_ = false; }  // what is on its way is out of date
 
     // Runs a pass over [0, n), one particle a thread.
     template <class Pass> void forEach(int n, const Pass& pass) {
@@ -210,7 +246,13 @@ private:
     Cuda(int index, Nothing)
         : index_(index) {}  // once this is done the destructor cleans up, whatever fails next
 
-    static constexpr size_t scratchBytes = 256 << 10;
+    static constexpr size_t scratchBytes = 256 << 10, glanceBytes = 256;
+    // What was copied for the host and where it wants it.
+    struct Landing {
+        void* to;
+        const void* from;
+        size_t bytes;
+    };
     struct Span {
         cudaEvent_t begin, end;
         PassTime* time;
@@ -222,6 +264,7 @@ private:
     template <class... Parameters, class... Arguments>
     void launch(void (*kernel)(Parameters...), int blocks, int threads, Arguments&&... arguments) {
         activate();
+        busy_ = true;
         cudaLaunchConfig_t config{};
         config.gridDim = dim3(unsigned(blocks));
         config.blockDim = dim3(unsigned(threads));
@@ -231,7 +274,9 @@ private:
     }
     void activate() const;  // CUDA calls go to the device that the calling thread chose last
     void* allocateBytes(size_t bytes);
-    void copy(void* to, const void* from, size_t bytes, cudaMemcpyKind) const;
+    void send(void* to, const void* from, size_t bytes);
+    void bring(void* to, const void* from, size_t bytes) const;
+    bool glance(void* to, const void* from, size_t bytes);
     void clear(void* memory, size_t bytes);
 
     void beginRecording();
@@ -254,7 +299,14 @@ private:
     void* sortSpace_ = nullptr;
     size_t sortSpaceBytes_ = 0;
     int64_t bytes_ = 0;
+    int64_t layout_ = 0;  // grows when memory is given back: what was recorded may use it
     bool recording_ = false;
+    mutable bool busy_ = true;  // work was asked for since the last wait
+    mutable PinnedMemory pinned_;
+    mutable std::vector<Landing> landings_;
+    void* glanced_ = nullptr;  // pinned
+    cudaEvent_t glanceMade_ = nullptr;
+    bool glanceAsked_ = false;
     std::vector<Span> spans_;
     std::vector<cudaEvent_t> idle_;  // events to be used again
 };

@@ -22,6 +22,7 @@ public:
     explicit Omp(int threads, bool adapts = false) : team_(threads, adapts) {}
     int threads() const { return team_.size(); }
     static constexpr int index() { return hostMemory; }
+    static constexpr void* stream() { return nullptr; }
     int64_t bytes() const { return bytes_; }  // held by buffers
 
     // Zeroed memory, aligned for any vector and readable one vector past its end; huge pages when
@@ -53,6 +54,8 @@ public:
     template <class T> void download(T* to, const T* from, size_t n) const {
         std::copy(from, from + n, to);
     }
+
+    template <class T> void fetch(T* to, const T* from, size_t n) const { download(to, from, n); }
 
     // Calls body(begin, end) for pieces of [0, n); pieces begin at multiples of `piece`.
     template <class Body> void forRanges(int n, int piece, const Body& body) {

@@ -62,12 +62,11 @@ void CudaLoan::end() {
     cudaGraphicsUnregisterResource(std::exchange(resource_, nullptr));
 }
 
-Vertex* CudaLoan::map() {
+Vertex* CudaLoan::map(void* stream) {
     require(cudaSetDevice(device_), "choosing a device");
-    // On the default stream; the device works on another one, so that GL's reading of the last
-    // picture is waited for here.
-    require(cudaGraphicsMapResources(1, &resource_, nullptr), "mapping the vertex buffer");
-    require(cudaStreamSynchronize(nullptr), "mapping the vertex buffer");
+    stream_ = stream;
+    require(cudaGraphicsMapResources(1, &resource_, static_cast<cudaStream_t>(stream)),
+            "mapping the vertex buffer");
     void* memory = nullptr;
     size_t bytes = 0;
     require(cudaGraphicsResourceGetMappedPointer(&memory, &bytes, resource_),
@@ -78,7 +77,7 @@ Vertex* CudaLoan::map() {
 // What fails here was lost before, and the next call says so.
 void CudaLoan::unmap() {
     cudaSetDevice(device_);
-    cudaGraphicsUnmapResources(1, &resource_, nullptr);
+    cudaGraphicsUnmapResources(1, &resource_, static_cast<cudaStream_t>(stream_));
 }
 
 }  // namespace spindrift

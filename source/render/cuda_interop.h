@@ -28,14 +28,16 @@ public:
     std::string begin(GLuint buffer, int device);
     void end();  // before the buffer gets other memory
 
-    // Device memory, until unmap(); GL must not touch the buffer in between. unmap() is ordered
-    // behind the device's work that was waited for.
-    Vertex* map();
+    // Device memory for work on this stream, a cudaStream_t, until unmap(); GL must not touch the
+    // buffer in between. That work comes behind GL's reading of the last picture, GL's next behind
+    // that work; nobody waits.
+    Vertex* map(void* stream);
     void unmap();
 
 private:
     cudaGraphicsResource* resource_ = nullptr;
     int device_ = hostMemory;
+    void* stream_ = nullptr;
 };
 
 }  // namespace spindrift

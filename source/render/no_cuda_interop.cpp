@@ -6,7 +6,7 @@ namespace spindrift {
 int drawingDevice() { return hostMemory; }
 std::string CudaLoan::begin(GLuint, int) { return "there is no CUDA in this build"; }
 void CudaLoan::end() {}
-Vertex* CudaLoan::map() { return nullptr; }
+Vertex* CudaLoan::map(void*) { return nullptr; }
 void CudaLoan::unmap() {}
 
 }  // namespace spindrift

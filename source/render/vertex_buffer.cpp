@@ -21,7 +21,7 @@ void VertexBuffer::resize(int count) {
                                          " particles: raise simulation.spacing");
 }
 
-VertexMemory VertexBuffer::map(int device) {
+VertexMemory VertexBuffer::map(int device, void* stream) {
     CHECK(!mapped());
     if (count_ == 0) return {nullptr, device};
     if (device != hostMemory && !drawingDevice_) drawingDevice_ = drawingDevice();
@@ -35,7 +35,7 @@ VertexMemory VertexBuffer::map(int device) {
         }
     }
     if (device != hostMemory && device == drawingDevice_) {
-        const VertexMemory memory{loan_.map(), device};
+        const VertexMemory memory{loan_.map(stream), device};
         mapped_ = Mapped::Device;
         return memory;
     }

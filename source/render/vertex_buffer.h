@@ -20,7 +20,8 @@ public:
 
     // Memory for count() vertices, of that CUDA device if it is the one that draws, of the host
     // otherwise; the old contents are undefined. Nothing may be drawn until unmap().
-    VertexMemory map(int device = hostMemory);
+    // `stream` is the one that the device works on (Readable::cudaStream).
+    VertexMemory map(int device = hostMemory, void* stream = nullptr);
     void unmap();
     bool mapped() const { return mapped_ != Mapped::Not; }
 

@@ -16,8 +16,6 @@ constexpr double BytesPerCell = 16;
 // boundary particles have no velocity. Cells: two starts and a count.
 constexpr double GpuBytesPerParticle = 136, GpuBytesPerCarried = 8, GpuBytesPerShifted = 32,
                  GpuBytesPerWall = 76, GpuBytesPerCell = 13;
-// Local steps: a level and its sorted copy, those of density and acceleration, a flag.
-constexpr double GpuBytesPerLocalStep = 29, GpuBytesPerLocalWall = 1;
 // Mixtures: mass and viscosity, and their sorted copies. Surface tension: a normal and its length.
 constexpr double GpuBytesPerMixed = 16, GpuBytesPerNormal = 20;
 // Of an elastic block, whose particles have 18 bonds each (measured: 1170 and 300); sheets have
@@ -70,17 +68,14 @@ int64_t estimateMemory(const Scene& scene, ParticleCount count) {
 
 int64_t estimateGpuMemory(const Scene& scene, ParticleCount count) {
     const double fluid = double(count.fluid), walls = double(count.walls);
-    const bool local = scene.time.mode == TimeMode::Local;
-    const double more = (local ? GpuBytesPerLocalStep : 0) +
-                        (carriesDensity(scene) ? GpuBytesPerCarried : 0) +
+    const double more = (carriesDensity(scene) ? GpuBytesPerCarried : 0) +
                         (shiftsParticles(scene) ? GpuBytesPerShifted : 0) +
                         (isMultiFluid(scene) ? GpuBytesPerMixed : 0) +
                         (scene.fluid.surfaceTension > 0 ? GpuBytesPerNormal : 0);
-    const double bytes = (GpuBytesPerParticle + more + keptBytes(scene)) * fluid +
-                         (GpuBytesPerWall + (local ? GpuBytesPerLocalWall : 0)) * walls +
-                         GpuBytesPerCell * mostCells(scene, fluid + walls) +
-                         extraBytes(scene, fluid, walls) +
-                         GpuBytesPerObjectParticle * countObjectParticles(scene) + GpuBytesAnyway;
+    const double bytes =
+        (GpuBytesPerParticle + more + keptBytes(scene)) * fluid + GpuBytesPerWall * walls +
+        GpuBytesPerCell * mostCells(scene, fluid + walls) + extraBytes(scene, fluid, walls) +
+        GpuBytesPerObjectParticle * countObjectParticles(scene) + GpuBytesAnyway;
     return int64_t(std::min(bytes, 9e18));
 }
 

@@ -20,10 +20,17 @@ static int threadCount(const Scene& scene) {
 
 static int deviceOf(const Scene& scene) { return std::max(scene.compute.device, 0); }
 
-std::string whyNoGpu(const Scene& scene) {
+std::string whyNotForGpus(const Scene& scene) {
     if (scene.compute.precision == Precision::Double)
         return "double precision is computed on the CPU only; use float";
-    return cudaProblem(deviceOf(scene));
+    if (scene.time.mode == TimeMode::Local)
+        return "local steps (time.mode) are computed on the CPU only; set time.mode to cfl";
+    return "";
+}
+
+std::string whyNoGpu(const Scene& scene) {
+    const std::string why = whyNotForGpus(scene);
+    return why.empty() ? cudaProblem(deviceOf(scene)) : why;
 }
 
 // Asked before anything is taken: a GPU's memory is not swapped, and a half-built run would be of

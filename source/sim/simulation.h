@@ -156,7 +156,7 @@ public:
     // Of fluid and of boundary particles. Fluid particles have ids [0, fluidCount); where they come
     // and go (sources, sinks) it is how many there are now, whose ids rise and are never used
     // again.
-    virtual int fluidCount() const = 0;
+    virtual int fluidCount() = 0;
     virtual int wallCount() const = 0;
     // The first of the boundary particles belong to solids.
     virtual int solidParticleCount() const = 0;
@@ -166,6 +166,9 @@ public:
     // What it comes to, which takes a look at all particles; and the time alone.
     virtual Measurement measure() = 0;
     virtual StepState clock() = 0;
+    // Whether it has come to this time (s), but for rounding. A GPU is waited for only where it may
+    // have.
+    virtual bool hasReached(double time) = 0;
     // All fluid particles, in the order of their ids; one of them by its id, nothing where there
     // is none; the same, Error (Usage) where there is none.
     virtual std::vector<Particle> particles() = 0;
@@ -185,8 +188,10 @@ public:
     // of the fluid's values. Boundary value: 1 of a solid, 0 of the domain's walls, of objects 2 +
     // their radius / that of a fluid particle.
     virtual Range writeVertices(VertexMemory out, ColorBy, int walls) = 0;
-    // The number of the CUDA device that steps, or hostMemory (-1).
+    // The number of the CUDA device that steps, or hostMemory (-1); and the cudaStream_t that its
+    // work is on, or null.
     virtual int cudaDevice() const = 0;
+    virtual void* cudaStream() const = 0;
 };
 
 class Profiled {
@@ -216,7 +221,8 @@ class Simulation : public Steppable, public Readable, public Profiled {};
 // (NoDevice, Memory, Scene).
 std::unique_ptr<Simulation> makeSimulation(const Scene&);
 std::unique_ptr<Simulation> makeSimulation(const Scene&, const RunState&);
-// Why this scene can't run on a GPU, in one line; "" when it can.
+// Why this scene can't run on a GPU, in one line; "" when it can. And why not on any, however good.
 std::string whyNoGpu(const Scene&);
+std::string whyNotForGpus(const Scene&);
 
 }  // namespace spindrift

@@ -51,6 +51,8 @@ public:
         StepState clock = state.clock;
         clock.speed = 0;  // a checkpoint doesn't know it
         flow_.setClock(clock);
+        known_ = false, seen_ = clock, asked_ = clock.steps;
+        if constexpr (Device::recordsSteps) flow_.device.dropGlance();
         blocks_.wake();
         if (std::any_of(state.solids.begin(), state.solids.end(),
                         [](const SolidMotion& m) { return m.dragged != Vec3d{}; }))
@@ -62,19 +64,21 @@ public:
         if (energy_.isOn()) energy_.begin(measureFluid(flow_, fluidCount()));
     }
     void apply(const Scene& scene) override {
+        if (const std::string why = whyNotForGpus(scene); Device::recordsSteps && !why.empty())
+            throw Error(Failure::NoDevice, why + "; or use --backend cpu");
         refresh(scene);
         flow_.fillMixture();
         blocks_.wake();
     }
     void stir(const Stir& s) override {
-        flow_.stir = s;
-        refresh(flow_.scene);
+        const bool stirred = flow_.stir.radius > 0;
+        flow_.setStir(s);
+        if (stirred != (s.radius > 0)) refresh(flow_.scene);
     }
     void hold(const Hold& h) override {
         require(h.solid < solids_.count(), "hold: the scene has no solid of that number");
         if (h.solid >= 0) letSolidsMove();
-        floating_.hold(h);
-        refresh(flow_.scene);
+        if (floating_.hold(h)) refresh(flow_.scene);
     }
     void drive(ObjectDriver* driver) override {
         require(objects_.count() > 0, "drive: the scene has no elastic objects");
@@ -89,18 +93,29 @@ public:
     std::vector<double> timeSteps(int count) override {
         return flow_.device.timeEach(count, [&] { stepOnce(); });
     }
-    void wait() override { flow_.device.wait(); }
+    void wait() override {
+        if constexpr (Device::recordsSteps) know();
+    }
 
     // --- what it is like ---
 
-    int fluidCount() const override { return sources_.count(); }
+    int fluidCount() override {
+        if constexpr (!Device::hostReadable) know();
+        return sources_.count();
+    }
     int wallCount() const override { return flow_.wallCount; }
     int solidParticleCount() const override {
         return std::accumulate(flow_.solidSizes.begin(), flow_.solidSizes.end(), 0);
     }
     int objectParticleCount() const override { return objects_.count(); }
-    std::vector<SolidPose> solidPoses() override { return solids_.poses(); }
-    int solidAt(Vec3d point) override { return solids_.at(point); }
+    std::vector<SolidPose> solidPoses() override {
+        know();
+        return solids_.poses();
+    }
+    int solidAt(Vec3d point) override {
+        know();
+        return solids_.at(point);
+    }
 
     Range writeVertices(VertexMemory out, ColorBy by, int walls) override {
         if (out.device == flow_.device.index()) return writeVertices(out.data, by, walls);
@@ -121,20 +136,23 @@ public:
         energy_.measure(m);
         return m;
     }
-    StepState clock() override { return flow_.readClock(); }
+    StepState clock() override {
+        if constexpr (Device::hostReadable) return flow_.readClock();
+        know();
+        return seen_;
+    }
+    bool hasReached(double time) override {
+        const double nearly = time * (1 - 1e-9);
+        return mayBeAt(nearly) && clock().time >= nearly;
+    }
     RunState state() override {
         RunState s;
-        s.particles = {flow_.fluid.positions(),
-                       flow_.fluid.velocities(),
-                       flow_.wallsAtHome,
-                       {},
-                       flow_.solidSizes,
-                       {},
-                       flow_.bodies};
-        s.clock = clock();
+        s.particles.walls = flow_.wallsAtHome, s.particles.solidSizes = flow_.solidSizes;
+        s.particles.bodies = flow_.bodies;
         s.start = flow_.extent;
-        s.densities = flow_.fluid.densities();
-        s.pressures = flow_.fluid.pressures();
+        if constexpr (!Device::hostReadable) look();
+        flow_.fluid.save(s);
+        s.clock = clock();
         forEachPart(parts(), [&](auto& part) { part.save(s); });
         return s;
     }
@@ -154,6 +172,7 @@ public:
 
     std::string deviceName() const override { return deviceName_; }
     int cudaDevice() const override { return flow_.device.index(); }
+    void* cudaStream() const override { return flow_.device.stream(); }
     PairsSeen pairsSeen() override { return flow_.search.pairsSeen(); }
     std::vector<PlanRow> plan() const override { return runner_.plan().told(); }
     std::vector<PassTime> times() override { return runner_.times(); }
@@ -181,6 +200,7 @@ private:
         forEachPart(parts(),
                     [&](auto& part) { c.maxStep = min(c.maxStep, real(part.longestStep())); });
         const double step = flow_.longestStep();
+        longest_ = std::max(longest_, step);
         forEachPart(parts(), [&](auto& part) { part.knowLongestStep(step); });
         flow_.addBuffers();
         flow_.fluid.weighViscosity(!*whyViscosityIsNotWeighed(flow_));
@@ -189,6 +209,29 @@ private:
             runner_.take(Maker(flow_, blocks_, solver_, parts()).plan());
         });
     }
+    // What the host may ask for between steps is fetched from a GPU together, and waited for once.
+    void look() {
+        if (known_) return;
+        flow_.device.fetch(&seen_, flow_.clock.data(), 1);
+        sources_.look(), solids_.look();
+        known_ = Device::recordsSteps;
+    }
+    void know() {
+        look();
+        flow_.device.wait();
+        if constexpr (Device::recordsSteps) flow_.device.dropGlance();  // it is older
+        asked_ = seen_.steps, longest_ = flow_.longestStep();
+    }
+    // Whether the run may be at that time, s, by what is known of the GPU's clock without waiting:
+    // where it stood some steps ago, and how long they can have been.
+    bool mayBeAt(double time) {
+        if constexpr (Device::recordsSteps)
+            if (!known_) {
+                flow_.device.glance(&seen_, flow_.clock.data());
+                return seen_.time + (double(asked_ - seen_.steps) + 1e-3) * longest_ >= time;
+            }
+        return true;
+    }
     void letSolidsMove() {
         if (solids_.letMove()) refresh(flow_.scene);
     }
@@ -196,7 +239,8 @@ private:
         const bool still = flow_.stir.radius <= 0 && !solids_.moves();
         if (still && blocks_.letTimePass()) return;
         flow_.device.step([&] { runner_.run(); });
-        if (objects_.isDriven() && objects_.exchange(clock().time)) runner_.outdateRecordings();
+        known_ = false, ++asked_;
+        if (objects_.isDriven() && mayBeAt(objects_.arrival())) objects_.exchange(clock().time);
     }
     Range writeVertices(Vertex* out, ColorBy by, int walls) {
         const View v = flow_.view();
@@ -222,6 +266,10 @@ private:
     EnergyBalance<Device> energy_{flow_, solids_};
     PressureSolver<Device> solver_{flow_};
     StepRunner<Device> runner_{flow_.device, {&flow_.fluid, &flow_.walls, &objects_.surfaceSet()}};
+    bool known_ = false;                            // what look() asks for, since the last step
+    StepState seen_;                                // the clock, some steps ago
+    int64_t asked_ = 0;                             // steps of the run, until now
+    double longest_ = 0;                            // s, that any of them since then can have had
     Buffer<Vertex, Device> staging_{flow_.device};  // for vertices that the host is to have
 };
 

@@ -5,7 +5,9 @@
 #include "scene/memory.h"
 #include "sim/make_simulation.h"
 
+#include <cstdlib>
 #include <random>
+#include <thread>
 
 namespace spindrift {
 namespace {
@@ -33,8 +35,9 @@ const char* const Scenes[] = {"1.json",
                               "test/artery_small.json",
                               "test/tap_small.json"};
 
-std::unique_ptr<Simulation> onCpu(const Scene& s, const RunState& from) {
-    return makeSimdSimulation(s, from, 2);
+std::unique_ptr<Simulation> onCpu(const Scene& s, const RunState& from, int threads = 2) {
+    const int all = int(std::max(1u, std::thread::hardware_concurrency()));
+    return makeSimdSimulation(s, from, threads > 0 ? threads : all);
 }
 std::unique_ptr<Simulation> onGpu(const Scene& s, const RunState& from) {
     return makeCudaSimulation(s, from, 0);
@@ -97,6 +100,29 @@ TEST_P(Backends, OneStepFromTheSameStateAgreesToRounding) {
     EXPECT_LT(d.pressure, 1e-5);
     EXPECT_NEAR(cpu->measure().dt, gpu->measure().dt, 1e-5 * cpu->measure().dt);
     EXPECT_GT(gpu->measure().time, state.clock.time);
+}
+
+// As many particles as SPINDRIFT_PARTICLES says: gpu_check.py asks for 1 and 10 million. Sizes have
+// faults of their own: numbers that overflow, loops that end too early.
+TEST(LargeScene, OneStepAgreesToRounding) {
+    NEED_GPU();
+    const char* asked = std::getenv("SPINDRIFT_PARTICLES");
+    const double particles = asked ? std::atof(asked) : emulated ? 20'000 : 1'000'000;
+    Scene scene = shippedScene("dam_break.json", particles);
+    scene.simulation.formulation = Formulation::Wcsph;
+    scene.simulation.spacing *= float(std::cbrt(double(countParticles(scene).fluid) / particles));
+    auto before = onCpu(scene, placeParticles(scene), 0);
+    before->step(3);
+    const RunState state = before->state();
+    before.reset();
+    auto cpu = onCpu(scene, state, 0), gpu = onGpu(scene, state);
+    EXPECT_GT(gpu->fluidCount(), 0.9 * particles);
+    cpu->step(), gpu->step();
+    const Difference d = difference(scene, *cpu, *gpu);
+    EXPECT_LT(d.position, 1e-5);
+    EXPECT_LT(d.density, 1e-5);
+    EXPECT_LT(d.pressure, 1e-5);
+    EXPECT_NEAR(cpu->measure().dt, gpu->measure().dt, 1e-5 * cpu->measure().dt);
 }
 
 // As many iterations lead to the same pressures.
@@ -229,50 +255,31 @@ TEST(Integrators, StepAsOnTheCpu) {
         }
 }
 
-// With steps of their own for particles the host asks after each moment whether the step is over.
-// The CPU's lanes evaluate whole clusters, also those of their particles that aren't due; in double
-// precision it is one particle at a time, as here.
-TEST(BlockTimeSteps, AreThoseOfTheCpu) {
+// A GPU would put all particles in order at each of their moments.
+TEST(LocalSteps, AreRefused) {
     NEED_GPU();
-    for (const char* file :
-         {"test/dam_break_small.json", "test/solids_small.json", "test/ball_drop_small.json"}) {
-        Scene scene = shippedScene(file);
-        if (file == std::string("test/ball_drop_small.json"))
-            scene.simulation.formulation = Formulation::DeltaSph;
-        auto before = onCpu(scene, placeParticles(scene));
-        before->step(40);  // no longer so crowded that rounding decides how short a step is
-        scene.time.mode = TimeMode::Local;
-        auto gpu = onGpu(scene, before->state()), again = onGpu(scene, before->state());
-        auto cpu = makeDoubleSimulation(scene, before->state(), 2);
-        cpu->step(20), gpu->step(20);
-        for (int k = 0; k < 20; ++k) again->step();
-        expectSameBits(gpu->state(), again->state());
-        const Difference d = difference(scene, *cpu, *gpu);
-        EXPECT_LT(d.position, 1e-4) << file;
-        EXPECT_LT(d.density, 1e-4) << file;
-        EXPECT_NEAR(gpu->measure().evaluations, cpu->measure().evaluations,
-                    0.01 * cpu->measure().evaluations);
-        EXPECT_LE(gpu->bytes(), estimateGpuMemory(scene, countParticles(scene)));
-    }
-}
-
-TEST(BlockTimeSteps, LetAPoolRest) {
-    NEED_GPU();
-    Scene scene;
-    scene.simulation.dimensions = 2, scene.simulation.spacing = 0.02f;
-    scene.domain.max = {0.4f, 0.3f, 1};
-    scene.fluid.bodies[0].min = {0, 0, 0}, scene.fluid.bodies[0].max = {0.4f, 0.1f, 1};
-    scene.fluid.artificialViscosity = 0.5f;
+    Scene scene = testScene("dam_break_small.json");
+    const auto gpu = onGpu(scene, placeParticles(scene));
+    gpu->step(3);
     scene.time.mode = TimeMode::Local;
-    auto gpu = onGpu(scene, placeParticles(scene));
-    double before = -1;
-    for (int k = 0; k < 200 && gpu->measure().evaluations > before; ++k)
-        before = gpu->measure().evaluations, gpu->step(50);
-    EXPECT_EQ(gpu->measure().evaluations, before) << "it never rests";
-    EXPECT_EQ(gpu->measure().kineticEnergy, 0);
-    gpu->stir({toFloat(gpu->particle(0).position), 0.05f, {1, 0, 0}});
-    gpu->step(20);
-    EXPECT_GT(gpu->measure().evaluations, before);
+    const auto refused = [](const auto& ask) {
+        try {
+            ask();
+            FAIL() << "was not refused";
+        } catch (const Error& error) {
+            EXPECT_EQ(error.failure, Failure::NoDevice);
+            const std::string said = error.what();
+            EXPECT_NE(said.find("local steps (time.mode)"), std::string::npos) << said;
+            EXPECT_NE(said.find("time.mode to cfl"), std::string::npos) << said;
+        }
+    };
+    refused([&] { gpu->apply(scene); });
+    gpu->step(3);
+    EXPECT_EQ(gpu->measure().steps, 6) << "the run goes on as it was";
+    scene.compute.backend = Backend::Cuda;
+    refused([&] { makeSimulation(scene); });
+    scene.compute.backend = Backend::Auto;
+    EXPECT_EQ(makeSimulation(scene)->cudaDevice(), hostMemory);
 }
 
 TEST(Switching, KeepsEveryBitHundredTimes) {
@@ -314,7 +321,7 @@ TEST(Recordings, NeverGoStale) {
                     scene.fluid.artificialViscosity = random() % 2 ? 0.0f : 0.1f;
                     break;
                 case 3:
-                    scene.time.mode = TimeMode(random() % (seed > 3 ? 2 : 3));
+                    scene.time.mode = TimeMode(random() % 2);
                     scene.time.step = 2e-4f;
                     break;
                 case 4: {

@@ -8,6 +8,10 @@
 #include "sim/particles/sort_passes.h"
 #include "sim/physics/time_step.h"
 
+#ifdef SPINDRIFT_EMULATED_GPU
+#include "emulation.h"
+#endif
+
 #include <gtest/gtest.h>
 
 #include <numeric>
@@ -119,7 +123,7 @@ TYPED_TEST(Devices, SortIsStable) {
         Buffer<int, TypeParam> key(device), cellStart(device), order(device);
         const std::vector<int> keys = randomNumbers(n, rows * rowLength);
         this->put(device, key, keys);
-        cellStart.resize(rows * rowLength + 1);
+        cellStart.resize(rows * rowLength + 2);
         ASSERT_EQ(device.sortByCell(n, key.data(), rows, rowLength, 1, cellStart.data(), order), n);
         std::vector<int> expected(n);
         std::iota(expected.begin(), expected.end(), 0);
@@ -153,6 +157,78 @@ TYPED_TEST(Devices, ParticlesThatAreNowhereAreSpreadOverTheCells) {
     for (int i = 1; i < n; ++i) ASSERT_NE(keys[i], keys[i - 1]);
     EXPECT_GE(keys.front(), 0);
     EXPECT_LT(keys.back(), 20 * 10 * 10);
+}
+
+// What was recorded would go on using memory that has been given back.
+TEST(CudaRecordings, DontOutliveWhatTheyUse) {
+    NEED_GPU();
+    const int cells = 400;
+    Cuda device(0);
+    Buffer<int, Cuda> key(device), cellStart(device), order(device);
+    const auto sort = [&] {
+        device.sortByCell(int(key.size()), key.data(), 1, cells, 1, cellStart.data(), order);
+    };
+    const auto expectSorted = [&](const std::vector<int>& keys) {
+        const std::vector<int> sorted = order.download();
+        for (size_t i = 1; i < sorted.size(); ++i)
+            ASSERT_LE(keys[size_t(sorted[i - 1])], keys[size_t(sorted[i])]);
+    };
+    cellStart.resize(cells + 2);
+    const std::vector<int> few = randomNumbers(1000, cells), many = randomNumbers(90000, cells);
+    key.fill(few);
+    order.resize(many.size());
+    sort();  // makes room
+    CudaRecording recording;
+    device.record(recording, sort);
+    EXPECT_TRUE(device.replay(recording));
+    expectSorted(few);
+    // The sort's own space grows, nothing else does.
+    Buffer<int, Cuda> other(device);
+    other.fill(many);
+    key.swap(other);
+    sort();
+    expectSorted(many);
+    key.swap(other);
+    EXPECT_FALSE(device.replay(recording)) << "it would sort in memory that was given back";
+    device.record(recording, sort);
+    EXPECT_TRUE(device.replay(recording));
+    expectSorted(few);
+}
+
+// Of the card itself: the estimate that refuses large scenes is not asked.
+TEST(Gpu, MemoryThatRunsOutIsOneLineAndTheNextRunGoes) {
+    NEED_GPU();
+#ifdef SPINDRIFT_EMULATED_GPU
+    emulation::machine.memory = 32 << 20;
+#endif
+    Scene scene = shippedScene("dam_break.json");
+    if (!emulated) scene.simulation.spacing = 0.0055f;  // a million
+    const RunState begin(placeParticles(scene));
+    const int64_t needed = makeCudaSimulation(scene, begin, 0)->bytes();
+    {
+        Cuda device(0);
+        std::vector<void*> taken;  // all but half of what the run needs
+        const auto tooMuch = [&] { return cudaFreeMemory(0) - needed / 2; };
+        for (int64_t piece = tooMuch(); piece > needed / 16;) try {
+                taken.push_back(device.allocate<char>(size_t(piece)));
+                piece = tooMuch();
+            } catch (const Error&) { piece /= 2; }
+        try {
+            makeCudaSimulation(scene, begin, 0);
+            ADD_FAILURE() << "there was room";
+        } catch (const Error& error) {
+            EXPECT_EQ(error.failure, Failure::Memory);
+            EXPECT_NE(std::string(error.what()).find("out of GPU memory while"), std::string::npos)
+                << error.what();
+        }
+        for (void* p : taken) device.release(p, 0);
+    }
+    const auto gpu = makeCudaSimulation(scene, begin, 0);
+    gpu->step(5);
+    EXPECT_TRUE(gpu->measure().finite);
+#ifdef SPINDRIFT_EMULATED_GPU
+    emulation::machine = {};
+#endif
 }
 
 TEST(CudaVertices, DeviceMemoryAndHostGetTheSame) {

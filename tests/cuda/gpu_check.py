@@ -1,14 +1,16 @@
 #!/usr/bin/env python3
-"""Everything that only a machine with an NVIDIA GPU can show: correctness against the CPU, interop, the sanitizers, errors,
-then the benchmark. Writes one dated result, JSON and Markdown, to docs/results/.
+"""What only a machine with an NVIDIA GPU can show, the most telling first: what the card is, one step against the CPU, the
+same bits twice, recordings, times, the sanitizers, what bounds the hot kernels, pictures.
 
-    gpu_check.py BUILD [--out FOLDER] [--most N] [--only PARTS]
+    gpu_check.py BUILD [--out FOLDER] [--budget SECONDS] [--most N] [--only PARTS]
 
-BUILD is a build folder, or what bundle.sh made of one; nothing else is needed but this checkout. Without a GPU each check
-says "skipped: no CUDA device", and nothing is written unless --out names a folder. Exit code 1 when a check fails."""
+BUILD is a build folder, or what bundle.sh made of one; nothing else is needed but this checkout. Each result is appended to
+a dated file in docs/results/ (.md to read, .jsonl with all figures) as soon as it is there, so that a run that is cut off
+has told what it found. When the budget is spent the rest is skipped. Without a GPU all is skipped, and nothing is written
+unless --out names a folder. BUILD/emulated, the emulated GPU, takes small scenes. Exit code 1 when a check fails."""
 import argparse
+import csv
 import datetime
-import glob
 import json
 import os
 import re
@@ -17,150 +19,262 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-NO_DEVICE, NO_MEMORY = 6, 7   # exit codes of the program
-SANITIZED = "Devices*:CudaVertices*:Recordings*"
+NO_DEVICE = 6   # exit code of the program
+NVIDIA_EGL = '{"file_format_version": "1.0.0", "ICD": {"library_path": "libEGL_nvidia.so.0"}}'
+STALLS = ("long_scoreboard", "short_scoreboard", "lg_throttle", "math_pipe_throttle", "wait", "not_selected")
 METRICS = {
     "gpu__time_duration.sum": "time",
-    "sm__throughput.avg.pct_of_peak_sustained_elapsed": "SM % of peak",
-    "smsp__inst_executed_pipe_fma.avg.pct_of_peak_sustained_active": "FMA pipe % of peak",
-    "l1tex__throughput.avg.pct_of_peak_sustained_active": "L1 % of peak",
-    "lts__throughput.avg.pct_of_peak_sustained_elapsed": "L2 % of peak",
-    "dram__throughput.avg.pct_of_peak_sustained_elapsed": "memory % of peak",
-    "sm__warps_active.avg.pct_of_peak_sustained_active": "warps % of peak",
+    "sm__throughput.avg.pct_of_peak_sustained_elapsed": "SM %",
+    "smsp__inst_executed_pipe_fma.avg.pct_of_peak_sustained_active": "FMA %",
+    "l1tex__throughput.avg.pct_of_peak_sustained_active": "L1 %",
+    "l1tex__t_sector_hit_rate.pct": "L1 hits",
+    "lts__throughput.avg.pct_of_peak_sustained_elapsed": "L2 %",
+    "dram__throughput.avg.pct_of_peak_sustained_elapsed": "memory %",
+    "sm__warps_active.avg.pct_of_peak_sustained_active": "warps %",
     "launch__registers_per_thread": "registers",
-    "smsp__thread_inst_executed_per_inst_executed.ratio": "threads per instruction",
+    **{f"smsp__average_warps_issue_stalled_{s}_per_issue_active.ratio": f"stalled: {s}" for s in STALLS},
 }
 
 
+class Skipped(Exception):
+    pass
+
+
 class Checks:
+    """Each check returns what there is to say of it, and figures as rows of a table; an Error fails it."""
+
+    class Error(Exception):
+        pass
+
     def __init__(self, arguments):
-        self.build = os.path.abspath(arguments.build)
-        self.arguments = arguments
-        self.rows = []          # {"name", "outcome": passed | failed | skipped, "detail"}
+        self.build, self.most = os.path.abspath(arguments.build), arguments.most
+        self.end = time.monotonic() + arguments.budget
         self.environment = dict(os.environ, SPINDRIFT_CONFIGS=f"{ROOT}/configs", SPINDRIFT_SHADERS=f"{ROOT}/shaders",
                                 OMP_WAIT_POLICY="passive")
-        code, text = self.run(["cuda_sort_bench", "1000"], limit=120)
+        code, text = self.start(["cuda_sort_bench", "1000"], 60)
         if code not in (0, NO_DEVICE):
             sys.exit(f"gpu_check.py: the programs of {self.build} don't run here: {text.strip()}")
         self.gpu = code == 0
+        self.device = self.name_of_device() if self.gpu else ""
+        self.emulated = self.device.startswith("emulated")
 
-    def run(self, command, limit=600, wrapper=()):
+    def left(self):
+        return self.end - time.monotonic()
+
+    def start(self, command, limit, wrapper=(), **environment):
         """Exit code and all output of a program of the build; code None when it took too long or isn't there."""
         line = [*wrapper, os.path.join(self.build, command[0]), *command[1:]]
         try:
-            process = subprocess.Popen(line, env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                                       cwd=ROOT, start_new_session=True)
+            process = subprocess.Popen(line, env=dict(self.environment, **environment), stdout=subprocess.PIPE,
+                                       stderr=subprocess.STDOUT, text=True, cwd=ROOT, start_new_session=True)
         except OSError as error:
             return None, str(error)
         try:
             return (process.communicate(timeout=limit)[0], process.returncode)[::-1]
         except subprocess.TimeoutExpired:   # what a wrapper started must not go on beside the next check
             os.killpg(process.pid, signal.SIGKILL)
-            return None, f"took more than {limit} s"
+            return None, ""
 
-    def note(self, name, passed, detail=""):
-        outcome = {True: "passed", False: "failed", None: "skipped"}[passed]
-        self.rows.append({"name": name, "outcome": outcome, "detail": detail})
-        print(f"{outcome:8}{name}{': ' + detail if detail else ''}", flush=True)
+    def run(self, command, limit=120, wanted=0, **how):
+        limit = min(limit, max(self.left(), 1))
+        code, text = self.start(command, limit, **how)
+        if code is None and not text:
+            raise Skipped(f"not done after {limit:.0f} s")
+        if code != wanted:
+            raise Checks.Error(f"exit code {code}: {text.strip()[-300:]}")
+        return text
 
-    def skip(self, name):
-        self.note(name, None, "" if self.gpu else "no CUDA device")
-
-    def tests(self, name, program, pattern):
-        code, text = self.run([program, f"--gtest_filter={pattern}"])
+    def tests(self, pattern, emulated=None, program="cuda_tests", **environment):
+        """Tests by their pattern, those that the emulated GPU has time for."""
+        pattern = emulated if self.emulated and emulated else pattern
+        limit = min(180, max(self.left(), 1))
+        code, text = self.start([program, f"--gtest_filter={pattern}"], limit, **environment)
+        if code is None:
+            raise Skipped(f"not done after {limit:.0f} s")
         counts = {word: int(n) for word, n in re.findall(r"\[\s*(PASSED|SKIPPED|FAILED)\s*\] (\d+) tests?", text)}
         failed = re.findall(r"\[  FAILED  \] ([\w/.]+) \(", text)
-        detail = f"{counts.get('PASSED', 0)} passed, {counts.get('SKIPPED', 0)} skipped" + (
-            ", failed: " + " ".join(failed) if failed else "")
-        if not self.gpu:
-            return self.skip(name)
-        self.note(name, code == 0 and counts.get("PASSED", 0) > 0, detail if code is not None else text)
+        if code != 0 or counts.get("PASSED", 0) == 0:
+            raise Checks.Error("failed: " + " ".join(failed) if failed else text.strip()[-300:])
+        gl = re.search(r"^OpenGL: (.*)$", text, re.MULTILINE)
+        return f"{counts['PASSED']} passed, {counts.get('SKIPPED', 0)} skipped{', ' + gl.group(1) if gl else ''}", []
 
-    def sanitizer(self, tool, program, *rest):
-        name = f"compute-sanitizer {tool}, {program} {rest[0] if rest else ''}".strip()
-        if not self.gpu:
-            return self.skip(name)
-        if not shutil.which("compute-sanitizer"):
-            return self.note(name, None, "no compute-sanitizer on this machine")
-        code, text = self.run([program, *rest], wrapper=["compute-sanitizer", "--tool", tool, "--error-exitcode", "9",
-                                                         # recordings that no longer fit are an error of an API call
-                                                         *(["--report-api-errors", "no"] if tool == "memcheck" else [])])
-        lines = [l for l in text.splitlines() if "=========" in l]
-        self.note(name, code == 0, lines[-1].strip("= ") if lines else text[-200:])
+    # --- what the card is ---
 
-    def expect_exit(self, name, command, wanted):
-        if not self.gpu:
-            return self.skip(name)
-        code, text = self.run(command)
-        self.note(name, code == wanted, text.strip().splitlines()[-1] if text.strip() else f"exit code {code}")
+    def name_of_device(self):
+        _, text = self.start(["spindrift", "test/ball_drop_small", "--headless", "--backend", "cuda", "--steps", "20"], 60)
+        said = re.search(r"^device +(.*)$", text, re.MULTILINE)
+        return said.group(1) if said else text.strip()[-300:]
 
-    def pictures(self):
-        """A snapshot of the GPU's run through EGL beside the CPU's: the same but for rounding."""
-        name = "snapshot of the GPU's run equals the CPU's"
-        if not self.gpu:
-            return self.skip(name)
-        with tempfile.TemporaryDirectory() as folder:
-            for backend in ("cpu", "cuda"):
-                code, text = self.run(["spindrift", "test/dam_break_small", "--headless", "--backend", backend, "--steps",
-                                       "100", "--screenshot", f"{folder}/{backend}.png", "--set", "view.range=fixed"])
-                if code != 0:
-                    return self.note(name, False, text[-200:])
-            way = "copied" if "copied through the host" in text else "written in place"
-            code, text = self.run(["spindrift", "compare", f"{folder}/cpu.png", f"{folder}/cuda.png", "--min-ssim", "0.98"])
-            self.note(name, code == 0, f"vertices {way}; {' '.join(text.split())}")
+    def identity(self):
+        if not self.device.endswith("CUDA, float"):
+            raise Checks.Error(self.device)
+        asked = ["nvidia-smi", "--query-gpu=name,memory.total,driver_version,clocks.max.sm", "--format=csv,noheader"]
+        return f"{self.device}; {first_line(asked)}", []
 
-    def bench(self):
-        if not self.gpu or self.arguments.most < 50_000:
-            self.skip("benchmark")
-            return [], []
+    def ceilings(self):
+        lines = self.run(["cuda_sort_bench", "ceilings", *(["1000"] if self.emulated else [])])
+        return "", rows_of(lines)
+
+    # --- one step, times ---
+
+    def large(self, particles):
+        if particles > self.most:
+            raise Skipped("--most")
+        return self.tests("LargeScene.*", SPINDRIFT_PARTICLES=str(particles))
+
+    def missing_device(self):
+        text = self.run(["spindrift", "--headless", "--backend", "cuda", "--device", "63"], wanted=NO_DEVICE)
+        return text.strip().splitlines()[-1], []
+
+    def bench(self, *choice):
         with tempfile.TemporaryDirectory() as folder:
             file = f"{folder}/bench.json"
-            code, text = self.run(["spindrift", "bench", "--gpu", "--json", file, "--most", str(self.arguments.most)])
-            print(text)
-            rows = json.load(open(file)) if code == 0 else []
-        self.note("benchmark", code == 0, "" if code == 0 else text[-300:])
-        code, text = self.run(["cuda_sort_bench"])
-        sorts = [json.loads(line) for line in text.splitlines() if line.startswith("{")]
-        self.note("counting sort equals radix sort", code == 0, f"{len(sorts)} sizes")
-        return rows, sorts
+            self.run(["spindrift", "bench", "--gpu", "--json", file, *choice], limit=240)
+            rows = json.load(open(file))
+        for row in rows:
+            row["ms_per_pass"] = " ".join(f"{k} {v:.3f}" for k, v in row.get("ms_per_pass", {}).items())
+        return "events and the clock", rows
+
+    def sorts(self):
+        rows = rows_of(self.run(["cuda_sort_bench", *(["1000"] if self.emulated else [])]))
+        if not all(row["same"] for row in rows):
+            raise Checks.Error("the counting sort's order is not the radix sort's")
+        return "counting sort equals radix sort", rows
+
+    # --- tools ---
+
+    def sanitizer(self, tool):
+        if not shutil.which("compute-sanitizer"):
+            raise Skipped("no compute-sanitizer on this machine")
+        wrapper = ["compute-sanitizer", "--tool", tool, "--error-exitcode", "9",
+                   # recordings that no longer fit are an error of an API call
+                   *(["--report-api-errors", "no"] if tool == "memcheck" else [])]
+        text = self.run(["spindrift", "test/ball_drop_small", "--headless", "--backend", "cuda", "--steps", "8"], limit=45,
+                        wrapper=wrapper)
+        return [l for l in text.splitlines() if "=========" in l][-1].strip("= "), []
 
     def profile(self):
-        """What bounds the two hot kernels, by ncu, at a million particles."""
-        name = "ncu"
-        if not self.gpu:
-            self.skip(name)
-            return []
         if not shutil.which("ncu"):
-            self.note(name, None, "no ncu on this machine")
-            return []
-        wrapper = ["ncu", "--clock-control", "none", "--cache-control", "none", "--csv", "--page", "raw", "-k", "regex:runPass", "--launch-skip", "60",
-                   "--launch-count", "40", "--metrics", ",".join(METRICS)]
-        code, text = self.run(["spindrift", "explain", "dam_break", "--backend", "cuda", "--steps", "8", "--set",
-                               "simulation.spacing=0.00545"], wrapper=wrapper)
-        rows = {}
-        lines = [l for l in text.splitlines() if l.startswith('"')]
-        if len(lines) < 3:
-            self.note(name, False, text[-300:])
-            return []
-        import csv
-        header, units, *data = list(csv.reader(lines))
-        for line in data:
-            kernel = re.search(r"(Compute\w+|Extrapolate\w+|Integrate|Reorder|FindCell|\w*InCell|CountCells)",
-                               line[header.index("Kernel Name")])
-            if kernel:
-                rows[kernel.group(1)] = {label: line[header.index(metric)] + " " + units[header.index(metric)]
-                                         for metric, label in METRICS.items() if metric in header}
-        self.note(name, bool(rows), f"{len(rows)} kernels")
-        return [{"kernel": k, **v} for k, v in rows.items()]
+            raise Skipped("no ncu on this machine")
+        wrapper = ["ncu", "--clock-control", "none", "--csv", "--page", "raw", "--kernel-name-base", "demangled", "-k",
+                   "regex:Compute(Density|Forces)", "--launch-skip", "8", "--launch-count", "2", "--metrics", ",".join(METRICS)]
+        text = self.run(["spindrift", "dam_break", "--headless", "--backend", "cuda", "--steps", "8", "--set",
+                         "simulation.formulation=wcsph", "--set", "simulation.spacing=0.00545"], wrapper=wrapper)
+        table = list(csv.reader(l for l in text.splitlines() if l.startswith('"')))
+        if len(table) < 3:
+            raise Checks.Error(text.strip()[-300:])
+        header, units, *kernels = table
+        rows = []
+        for line in kernels:
+            name = re.search(r"Compute\w+", line[header.index("Kernel Name")]).group(0)
+            rows.append({"kernel": name, **{label: f"{line[header.index(m)]} {units[header.index(m)]}".strip()
+                                            for m, label in METRICS.items() if m in header}})
+        return "", rows
+
+    # --- pictures ---
+
+    def find_egl(self):
+        """Containers lack the file that tells OpenGL of NVIDIA's library; without it Mesa draws, on the CPU."""
+        known = "/usr/share/glvnd/egl_vendor.d/10_nvidia.json"
+        if self.emulated or "__EGL_VENDOR_LIBRARY_FILENAMES" in os.environ:
+            return
+        if not os.path.exists(known):
+            known = os.path.join(tempfile.mkdtemp(), "10_nvidia.json")
+            with open(known, "w") as file:
+                file.write(NVIDIA_EGL)
+        self.environment["__EGL_VENDOR_LIBRARY_FILENAMES"] = f"{known}:/usr/share/glvnd/egl_vendor.d/50_mesa.json"
+
+    def interop(self):
+        self.find_egl()
+        return self.tests("Interop*")
+
+    def pictures(self):
+        """The GPU's run drawn beside the CPU's: the same but for rounding."""
+        with tempfile.TemporaryDirectory() as folder:
+            for backend in ("cpu", "cuda"):
+                text = self.run(["spindrift", "test/dam_break_small", "--headless", "--backend", backend, "--steps", "100",
+                                 "--screenshot", f"{folder}/{backend}.png", "--set", "view.range=fixed"])
+            way = "copied" if "copied through the host" in text else "written in place"
+            same = self.run(["spindrift", "compare", f"{folder}/cpu.png", f"{folder}/cuda.png", "--min-ssim", "0.98"])
+        return f"vertices {way}; {' '.join(same.split())}", []
+
+
+def few(test):
+    """Of the emulated GPU's scenes: plain, solved pressures, carried densities, solids, elastic objects, sources."""
+    return ":".join(f"Scenes/Backends.{test}*/{k}" for k in (0, 3, 12, 15, 20, 21))
+
+
+def checks_of(c):
+    """(part, what is shown, seconds that it should have, how), the most telling first."""
+    return [
+        ("identity", "the device", 1, c.identity),
+        ("identity", "ceilings", 5, c.ceilings),
+        ("identity", "loops, sums, bins, sort", 5, lambda: c.tests("Devices*:CudaVertices*:CudaRecordings*")),
+        ("step", "one step against the CPU, all scenes", 10,
+         lambda: c.tests("*Backends.OneStep*:Integrators*:SolvedPressures*", few("OneStep"))),
+        ("step", "neighbours against the sum over all pairs", 10,
+         lambda: c.tests("*Neighbours*:NeighbourLists*:Conservation*", "*Neighbours*", "unit_tests")),
+        *[("step", f"one step against the CPU, {name} particles", seconds, lambda count=count: c.large(count))
+          for name, count, seconds in (("20 thousand", 20_000, 5), ("a million", 1_000_000, 20), ("ten million", 10_000_000, 60))
+          if count <= 20_000 or not c.emulated],
+        ("bits", "the same bits twice", 10, lambda: c.tests("*Backends.TwoRuns*", few("TwoRuns"))),
+        ("recordings", "recordings, hold, stir, switching", 10,
+         lambda: c.tests("Recordings*:Switching*:GravityRamp*:LocalSteps*", "Recordings.Never*:Switching*:GravityRamp*:LocalSteps*")),
+        ("recordings", "sums after many steps", 20, lambda: c.tests("*Backends.SumsAgree*", "Scenes/Backends.SumsAgree*/3")),
+        ("errors", "memory, and when it runs out on the card", 10, lambda: c.tests("Gpu.*", "Gpu.MemoryThatRunsOut*")),
+        ("errors", "a device that isn't there is one line and its exit code", 2, c.missing_device),
+        ("bench", "sorts", 5, c.sorts),
+        *([] if c.emulated else [
+            ("bench", "steps, to a million particles", 30, lambda: c.bench("--most", str(min(c.most, 1_000_000)))),
+            ("bench", "steps of ten million", 60, lambda: c.bench("--only", "10000k", "--most", "10000000"))]),
+        *[("sanitizers", tool, 10, lambda tool=tool: c.sanitizer(tool))
+          for tool in ("memcheck", "synccheck", "racecheck", "initcheck")],
+        ("profile", "what bounds the hottest kernels, a million particles (ncu)", 20, c.profile),
+        ("pictures", "interop: pictures pixel for pixel", 5, c.interop),
+        ("pictures", "a snapshot equals the CPU's", 5, c.pictures),
+    ]
+
+
+class Report:
+    """Written line by line, so that what is known stays known."""
+
+    def __init__(self, folder, checks):
+        self.files, self.outcomes = [], []
+        if not folder:
+            return
+        os.makedirs(folder, exist_ok=True)
+        date = datetime.date.today().isoformat()
+        self.name = os.path.join(folder, f"{date}-gpu")
+        self.files = [open(f"{self.name}.{kind}", "w") for kind in ("jsonl", "md")]
+        commit = commit_of(checks.build)
+        self.append({"date": date, "commit": commit, "device": checks.device},
+                    f"# GPU check, {date}\n\n{checks.device}, commit {commit}. Made by `make gpu-check`.\n\n")
+
+    def append(self, row, text):
+        for file, line in zip(self.files, (json.dumps(row) + "\n", text)):
+            file.write(line)
+            file.flush()
+            os.fsync(file.fileno())
+
+    def note(self, name, outcome, detail, figures, seconds):
+        self.outcomes.append(outcome)
+        self.append({"check": name, "outcome": outcome, "detail": detail, "seconds": round(seconds, 1), "figures": figures},
+                    f"- {outcome}: {name}{'; ' + ' '.join(detail.split()) if detail else ''}\n" + table(figures))
+        print(f"{outcome:8}{name}{': ' + detail if detail else ''} ({seconds:.0f} s)", flush=True)
 
 
 def first_line(command):
     try:
         return subprocess.run(command, capture_output=True, text=True, cwd=ROOT).stdout.strip().splitlines()[0]
     except (OSError, IndexError):
-        return "unknown"
+        return f"no {command[0]}"
+
+
+def rows_of(text):
+    return [json.loads(line) for line in text.splitlines() if line.startswith("{")]
 
 
 def commit_of(build):
@@ -171,90 +285,48 @@ def commit_of(build):
 
 def table(rows):
     if not rows:
-        return "none\n"
+        return ""
     columns = list(dict.fromkeys(key for row in rows for key in row))
     cell = lambda value: f"{value:.4g}" if isinstance(value, float) else str(value)
-    lines = ["| " + " | ".join(columns) + " |", "|" + "---|" * len(columns)]
+    lines = ["", "| " + " | ".join(columns) + " |", "|" + "---|" * len(columns)]
     lines += ["| " + " | ".join(cell(row.get(c, "")) for c in columns) + " |" for row in rows]
-    return "\n".join(lines) + "\n"
+    return "\n".join(lines) + "\n\n"
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build")
     parser.add_argument("--out", help="folder of the result; docs/results when there is a GPU")
-    parser.add_argument("--most", type=int, default=100_000_000, help="largest number of particles to time")
-    parser.add_argument("--only", default="tests,errors,sanitizers,bench,profile",
-                        help="parts, where the time is short: tests, errors, sanitizers, bench, profile")
+    parser.add_argument("--budget", type=float, default=540, help="seconds, for all of it (540)")
+    parser.add_argument("--most", type=int, default=10_000_000, help="largest number of particles")
+    parser.add_argument("--only", help="parts: identity, step, bits, recordings, errors, bench, sanitizers, profile, pictures")
     arguments = parser.parse_args()
-    if not glob.glob(os.path.join(arguments.build, "cuda_tests")):
+    if not os.path.exists(os.path.join(arguments.build, "cuda_tests")):
         sys.exit(f"gpu_check.py: {arguments.build}: no cuda_tests there; build with CUDA, or name a build folder")
     checks = Checks(arguments)
-
-    parts = arguments.only.split(",")
-    bench, sorts, kernels = [], [], []
-    if "tests" in parts:
-        run_tests(checks)
-    if "errors" in parts:
-        run_errors(checks)
-    if "sanitizers" in parts:
-        for tool in ("memcheck", "racecheck", "initcheck"):
-            checks.sanitizer(tool, "cuda_tests", f"--gtest_filter={SANITIZED}")
-            checks.sanitizer(tool, "spindrift", "test/ball_drop_small", "--headless", "--backend", "cuda", "--steps", "20")
-    write(checks, arguments, bench, sorts, kernels)   # what is known so far, should the rest take too long
-    if "bench" in parts:
-        bench, sorts = checks.bench()
-        write(checks, arguments, bench, sorts, kernels)
-    if "profile" in parts:
-        kernels = checks.profile()
-    name = write(checks, arguments, bench, sorts, kernels)
-    if name:
-        print(f"{name}.md")
-    failed = [row for row in checks.rows if row["outcome"] == "failed"]
-    print(f"{len(checks.rows) - len(failed)} passed or skipped, {len(failed)} failed")
-    sys.exit(1 if failed else 0)
-
-
-def run_tests(checks):
-    checks.tests("passes against the sum over all pairs", "unit_tests", "*Neighbours*:NeighbourLists*:Conservation*")
-    checks.tests("loops, sums, bins, sort on the device", "cuda_tests", "Devices*:CudaVertices*")
-    checks.tests("GPU against CPU, two runs, switching, recordings", "cuda_tests", "*Backends*:Switching*:Recordings*")
-    checks.tests("memory", "cuda_tests", "Gpu.*")
-    checks.tests("interop: pictures pixel for pixel", "cuda_tests", "Interop*")
-    checks.pictures()
-
-
-def run_errors(checks):
-    checks.expect_exit("out of memory is one line and its exit code",
-                       ["spindrift", "--headless", "--backend", "cuda", "--set", "domain.max=[30,30,30]", "--set",
-                        "simulation.spacing=0.0299", "--set", "walls.kind=reflect", "--set", "fluid.bodies[0].max=[30,30,30]"],
-                       NO_MEMORY)
-    checks.expect_exit("a device that isn't there is one line and its exit code",
-                       ["spindrift", "--headless", "--backend", "cuda", "--device", "63"], NO_DEVICE)
-
-
-def write(checks, arguments, bench, sorts, kernels):
-    result = {
-        "date": datetime.date.today().isoformat(),
-        "commit": commit_of(checks.build),
-        "gpu": first_line(["nvidia-smi", "--query-gpu=name,memory.total", "--format=csv,noheader"]),
-        "driver": first_line(["nvidia-smi", "--query-gpu=driver_version", "--format=csv,noheader"]),
-        "checks": checks.rows, "bench": bench, "sort": sorts, "kernels": kernels,
-    }
-    folder = arguments.out or (f"{ROOT}/docs/results" if checks.gpu else None)
-    if folder:
-        os.makedirs(folder, exist_ok=True)
-        name = os.path.join(folder, f"{result['date']}-gpu")
-        with open(name + ".json", "w") as file:
-            json.dump(result, file, indent=1)
-        flat = [{**row, "ms_per_pass": " ".join(f"{k} {v:.3f}" for k, v in row.get("ms_per_pass", {}).items())}
-                for row in bench]
-        with open(name + ".md", "w") as file:
-            file.write(f"# GPU check, {result['date']}\n\n{result['gpu']}, driver {result['driver']}, commit {result['commit']}."
-                       f" Made by `make gpu-check`.\n\n## Checks\n\n{table(checks.rows)}\n## Steps\n\n{table(flat)}\n"
-                       f"## Sort\n\n{table(sorts)}\n## Kernels (ncu, a million particles)\n\n{table(kernels)}")
-        return name
-    return None
+    parts = arguments.only.split(",") if arguments.only else None
+    report = Report(arguments.out or (f"{ROOT}/docs/results" if checks.gpu and not checks.emulated else None), checks)
+    for part, name, seconds, check in checks_of(checks):
+        begin, figures = time.monotonic(), []
+        try:
+            if not checks.gpu:
+                raise Skipped("no CUDA device")
+            if parts and part not in parts:
+                raise Skipped("--only")
+            if checks.left() < seconds:
+                raise Skipped("no time left")
+            detail, figures = check()
+            outcome = "passed"
+        except Skipped as why:
+            outcome, detail = "skipped", str(why)
+        except (Checks.Error, OSError, ValueError, LookupError, AttributeError) as why:   # the other checks go on
+            outcome, detail = "failed", str(why)
+        report.note(name, outcome, detail, figures, time.monotonic() - begin)
+    if report.files:
+        print(f"{report.name}.md")
+    counts = {word: report.outcomes.count(word) for word in ("passed", "skipped", "failed")}
+    print(", ".join(f"{n} {word}" for word, n in counts.items()))
+    sys.exit(1 if counts["failed"] else 0)
 
 
 main()

@@ -10,6 +10,7 @@
 #endif
 
 #include <algorithm>
+#include <cstdio>
 
 namespace spindrift {
 namespace {
@@ -19,6 +20,8 @@ protected:
     void SetUp() override {
         NEED_GPU();
         static EglContext context(0);
+        static const int said = std::printf("OpenGL: %s\n", glName().c_str());
+        EXPECT_GT(said, 0);
         if (drawingDevice() != 0)
             GTEST_SKIP() << "skipped: OpenGL (" << glName() << ") draws elsewhere";
         scene.compute.backend = Backend::Cuda;
@@ -46,6 +49,7 @@ class ThroughHost final : public Simulation {
 public:
     explicit ThroughHost(Simulation& s) : s_(s) {}
     int cudaDevice() const override { return hostMemory; }
+    void* cudaStream() const override { return nullptr; }
     Range writeVertices(VertexMemory out, ColorBy by, int walls) override {
         EXPECT_EQ(out.device, hostMemory);
         return s_.writeVertices(out, by, walls);
@@ -58,11 +62,12 @@ public:
     int solidAt(Vec3d point) override { return s_.solidAt(point); }
     void drive(ObjectDriver* driver) override { s_.drive(driver); }
     void stopAt(double time) override { s_.stopAt(time); }
-    int fluidCount() const override { return s_.fluidCount(); }
+    int fluidCount() override { return s_.fluidCount(); }
     int wallCount() const override { return s_.wallCount(); }
     int solidParticleCount() const override { return s_.solidParticleCount(); }
     int objectParticleCount() const override { return s_.objectParticleCount(); }
     StepState clock() override { return s_.clock(); }
+    bool hasReached(double time) override { return s_.hasReached(time); }
     Measurement measure() override { return s_.measure(); }
     std::vector<Particle> particles() override { return s_.particles(); }
     std::optional<Particle> find(int id) override { return s_.find(id); }
@@ -128,6 +133,28 @@ TEST_F(Interop, RegistersOnceAndMapsOncePerFrame) {
     scene.view.showWalls = true;  // more vertices
     frame.update(*simulation, scene);
     EXPECT_EQ(emulation::counts.registrations, before.registrations + 1);
+}
+
+// After steps that have been waited for: the range of what is shown, and how it is spread.
+TEST_F(Interop, APictureIsWaitedForOnce) {
+    for (const char* file : {"dam_break_small.json", "solids_small.json", "floating_small.json",
+                             "tap_small.json", "artery_small.json"}) {
+        SCOPED_TRACE(file);
+        Scene other = testScene(file);
+        other.compute.backend = Backend::Cuda;
+        const auto run = makeSimulation(other);
+        Frame frame(200, 150, 1);
+        for (int k = 0; k < 4; ++k) run->step(), frame.update(*run, other);
+        for (ColorBy by : {ColorBy::Plain, ColorBy::Velocity, ColorBy::Density}) {
+            other.view.colorBy = by;
+            run->step();
+            run->wait();
+            const emulation::Counts c =
+                emulation::countsOf([&] { frame.update(*run, other), frame.draw(other); });
+            EXPECT_EQ(c.waits, 1);
+            EXPECT_EQ(emulation::countsOf([&] { run->step(4); }).waits, 0);
+        }
+    }
 }
 
 TEST_F(Interop, WhereGlRunsElsewhereVerticesAreCopied) {

@@ -1,6 +1,7 @@
 // The device's counting sort against CUB's radix sort, on the cells of a dam break: same result,
 // which one is faster? sort_bench [N...] prints a JSON line a size. Exit code 6 without a GPU, 1
-// when the results differ.
+// when the results differ. sort_bench ceilings [N] prints what the card's memory and arithmetic
+// make of N numbers.
 #include "core/error.h"
 #include "device/cuda.h"
 
@@ -11,6 +12,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <random>
+#include <string>
+#include <vector>
 
 namespace spindrift {
 namespace {
@@ -63,7 +66,7 @@ bool compare(int n) {
     Buffer<int, Cuda> key(device), start(device), order(device), radixStart(device),
         keysOut(device), items(device), radixOrder(device);
     for (auto* b : {&key, &items, &keysOut, &radixOrder}) b->resize(size_t(n));
-    for (auto* b : {&start, &radixStart}) b->resize(size_t(c.cells) + 1);
+    start.resize(size_t(c.cells) + 2), radixStart.resize(size_t(c.cells) + 1);
     device.upload(key.data(), c.keys.data(), c.keys.size());
     device.sortByCell(n, key.data(), 1, c.cells, 1, start.data(), order);  // makes room
     const double counting = median(device.timeEach(
@@ -89,12 +92,46 @@ bool compare(int n) {
         device.download(host.data(), b.data(), host.size());
         return host;
     };
-    const bool same = fetch(order) == fetch(radixOrder) && fetch(start) == fetch(radixStart);
+    std::vector<int> starts = fetch(start);
+    starts.pop_back();  // where those in no cell end
+    const bool same = fetch(order) == fetch(radixOrder) && starts == fetch(radixStart);
     std::printf(
         "{\"particles\": %d, \"cells\": %d, \"counting_ms\": %.4f, \"radix_ms\": %.4f, \"same\": "
         "%s}\n",
         n, c.cells, counting, radix, same ? "true" : "false");
     return same;
+}
+
+// Read and written; and multiplied and added, independent of one another.
+struct Copy {
+    const float* from;
+    float* to;
+    __device__ void operator()(int i) const { to[i] = from[i]; }
+};
+struct MultiplyAndAdd {
+    static constexpr int rounds = 4096, chains = 8;
+    float* out;
+    __device__ void operator()(int i) const {
+        float sums[chains] = {}, factor = 0.999f;
+        for (int k = 0; k < rounds; ++k)
+            for (int c = 0; c < chains; ++c) sums[c] = sums[c] * factor + float(i);
+        for (int c = 1; c < chains; ++c) sums[0] += sums[c];
+        out[i] = sums[0];
+    }
+};
+void printCeilings(int n) {
+    Cuda device(0);
+    Buffer<float, Cuda> from(device), to(device);
+    from.fill(std::vector<float>(size_t(n)));
+    to.resize(size_t(n));
+    const auto copy = [&] { device.forEach(n, Copy{from.data(), to.data()}); };
+    const auto add = [&] { device.forEach(n, MultiplyAndAdd{to.data()}); };
+    copy(), add();
+    const double perCopy = median(device.timeEach(20, copy)),
+                 perSum = median(device.timeEach(5, add));
+    std::printf("{\"numbers\": %d, \"copied_GB_per_s\": %.1f, \"float_GFLOP_per_s\": %.1f}\n", n,
+                8e-6 * n / perCopy,
+                2e-6 * n * MultiplyAndAdd::rounds * MultiplyAndAdd::chains / perSum);
 }
 
 }  // namespace
@@ -105,6 +142,8 @@ int main(int count, char** arguments) {
         std::fprintf(stderr, "skipped: no CUDA device (%s)\n", problem.c_str());
         return 6;
     }
+    if (count > 1 && std::string(arguments[1]) == "ceilings")
+        return spindrift::printCeilings(count > 2 ? std::atoi(arguments[2]) : 100'000'000), 0;
     bool same = true;
     std::vector<int> sizes = {50'000, 1'000'000, 10'000'000};
     if (count > 1) sizes.clear();

@@ -220,11 +220,12 @@ void curves(Ui& ui) {
 
 // Disabled with its reason as tooltip, as long as there is no GPU.
 void backend(Ui& ui) {
-    ImGui::BeginDisabled(!ui.noGpu.empty());
+    const std::string why = ui.whyNoSwitch();
+    ImGui::BeginDisabled(!why.empty());
     if (ImGui::Button(ui.onGpu ? "Run on the CPU" : "Run on the GPU", {-1, 0})) ui.switchBackend();
     ImGui::EndDisabled();
-    if (!ui.noGpu.empty() && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
-        ImGui::SetTooltip("%s", ui.noGpu.c_str());
+    if (!why.empty() && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
+        ImGui::SetTooltip("%s", why.c_str());
 }
 
 bool section(const char* title, bool open = false) {

@@ -235,8 +235,11 @@ void Player::takeBackChangesAfter(double time) {
 void Player::meetRequests() {
     constexpr size_t mostChanges = 64;
     if (applyWanted_ && !changedKnobs(scene, asked_, KnobKind::Physics).empty()) try {
-            const Simulation& s = stepper_->simulation();
+            Simulation& s = stepper_->simulation();
             checkScene(scene, "panel", ParticleCount{s.fluidCount(), s.wallCount()});
+            if (const std::string why = whyNotForGpus(scene);
+                s.cudaDevice() != hostMemory && !why.empty())
+                throw Error(Failure::NoDevice, why + ", or go on, on the CPU (G)");
             const Scene before = std::exchange(asked_, scene);
             if (!looksBack()) {
                 changes_.push_back({measurement_.time, before});

@@ -233,8 +233,13 @@ void Ui::setStirRadius(float wanted) {
     stale = true;
 }
 
+std::string Ui::whyNoSwitch() const {
+    return onGpu ? "" : !noGpu.empty() ? noGpu : whyNotForGpus(player.scene);
+}
+
 void Ui::switchBackend() {
-    if (!noGpu.empty()) return say("no GPU to switch to: " + noGpu, true);
+    if (const std::string why = whyNoSwitch(); !why.empty())
+        return say("no GPU to switch to: " + why, true);
     try {
         player.goOnWith(player.scene.simulation.formulation, onGpu ? Backend::Cpu : Backend::Cuda);
         noteDevice();

@@ -78,7 +78,7 @@ struct Ui {
     std::unique_ptr<Recording> recording;  // null: none
 
     Message message;
-    std::string noGpu;  // why there is no GPU to switch to; empty = there is one
+    std::string noGpu;  // why there is no GPU; empty = there is one
     std::vector<SceneEntry>
         scenes;             // that come with the program; read when the list is first opened
     std::string typedFile;  // in the scene list
@@ -122,7 +122,8 @@ struct Ui {
     float stirRadius() const;  // m
     void setStirRadius(float);
     void switchBackend();
-    void noteDevice();  // of a simulation that is new
+    std::string whyNoSwitch() const;  // "" = it can
+    void noteDevice();                // of a simulation that is new
     void noteWhetherSlow();
     void take(Remedy::How);
     void colorBy(ColorBy);

@@ -178,7 +178,9 @@ public:
           samples_((loadGl(), start.scene.window.samples)),
           gui_(screen_),
           ui_(loadFirst(screen_, gui_, std::move(start)), samples_) {
-        ui_.noGpu = whyNoGpu(ui_.player.scene);
+        Scene any;
+        any.compute.device = ui_.player.scene.compute.device;
+        ui_.noGpu = whyNoGpu(any);
         ui_.glRenderer = glName();
     }
 

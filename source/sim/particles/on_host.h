@@ -29,6 +29,14 @@ inline std::vector<int> slotsInOrder(const std::vector<int>& id) {
     return slots;
 }
 
+// The first ones of a field.
+inline std::vector<Vec3d> vectorsOf(const std::vector<real>& field, size_t count) {
+    std::vector<Vec3d> out(count);
+    for (size_t i = 0; i < count; ++i)
+        for (int k = 0; k < 3; ++k) out[i][k] = double(field[vectorOffset(int(i), k)]);
+    return out;
+}
+
 inline Particles onHost(int slots, std::vector<int>& id, std::vector<real>& x, std::vector<real>& u,
                         std::vector<real>& a, std::vector<real>& rho, std::vector<real>& term,
                         std::vector<real>& ratio) {

@@ -112,10 +112,11 @@ struct WriteWallVertices {
 template <class Value> struct CountValues {
     static constexpr int bins = 512;
     Particles p;
-    ValueRange range;
+    const ValueRange* range;
     HD_OUT int bin(int i) const {
-        if (p.id[i] < 0) return -1;
-        const float share = (float(Value::of(p, i)) - range.low) / (range.high - range.low);
+        const float low = range->low, high = range->high;
+        if (p.id[i] < 0 || !(high > low)) return -1;
+        const float share = (float(Value::of(p, i)) - low) / (high - low);
         return share >= 0 ? int((share < 1 ? share : 1) * (bins - 1))
                           : -1;  // division may round up a bit
     }

@@ -6,6 +6,7 @@
 #include "sim/particles/on_host.h"
 #include "sim/particles/particle_fields.h"
 #include "sim/particles/sort_passes.h"
+#include "sim/run_state.h"
 #include "sim/simulation.h"
 
 #include <algorithm>
@@ -95,7 +96,7 @@ public:
         holds_.mixture = true;
         resize(slots_);
         if (sortedId_.size() > 0) resizeSorted(slots_);  // a recorded sort can't make room
-        const std::vector<int> id = copy(id_);
+        const std::vector<int> id = id_.download();
         std::vector<real> ratio(slots_, 1), mu(slots_, 0);
         for (int i = 0; i < slots_; ++i)
             if (id[i] >= 0) ratio[i] = massRatios[id[i]], mu[i] = viscosities[id[i]];
@@ -160,31 +161,34 @@ public:
         for (Numbers& field : sorted_) field.release();
     }
 
-    // Relative to the domain's lower corner, in the order of ids: bit by bit what upload() took, or
-    // what became of it.
-    std::vector<Vec3> positions() const { return inOrder(&Particles::position); }
-    std::vector<Vec3> velocities() const { return inOrder(&Particles::velocity); }
-    // Empty where density is not carried, and where pressure is not solved for.
-    std::vector<float> densities() const {
-        return holds_.densityRate ? inOrder(&Particles::density) : std::vector<float>{};
+    // Into a state, relative to the domain's lower corner and in the order of ids: bit by bit what
+    // upload() took, or what became of it. All of it is fetched at once.
+    void save(RunState& state) const {
+        std::vector<int> id = id_.fetch();
+        std::vector<real> x = now(&Particles::position).fetch(),
+                          u = now(&Particles::velocity).fetch(), rho, p, held;
+        if (holds_.densityRate) rho = now(&Particles::density).fetch();
+        if (holds_.solvesPressure) p = now(&Particles::pressureOverRho2).fetch();
+        if (holds_.comesAndGoes) held = now(&Particles::heldBy).fetch();
+        device_.wait();
+        const std::vector<int> slots = slotsInOrder(id);
+        const auto vectors = [&](std::vector<real>& field, std::vector<Vec3>& out) {
+            out.reserve(slots.size());
+            for (const int slot : slots) {
+                const Vector<real> v = load(VectorField{field.data()}, slot);
+                out.push_back({float(v.x), float(v.y), float(v.z)});
+            }
+        };
+        vectors(x, state.particles.positions), vectors(u, state.particles.velocities);
+        for (const int slot : slots) {
+            if (!rho.empty()) state.densities.push_back(float(rho[size_t(slot)]));
+            if (!p.empty()) state.pressures.push_back(float(p[size_t(slot)]));
+            if (held.empty()) continue;
+            state.particles.ids.push_back(id[size_t(slot)]);
+            state.particles.heldBy.push_back(int(held[size_t(slot)]));
+        }
     }
-    std::vector<float> pressures() const {
-        return holds_.solvesPressure ? inOrder(&Particles::pressureOverRho2) : std::vector<float>{};
-    }
-    // Empty where none come and go.
-    std::vector<int> ids() const {
-        std::vector<int> out;
-        if (!holds_.comesAndGoes) return out;
-        const std::vector<int> id = copy(id_);
-        for (const int slot : slotsInOrder(id)) out.push_back(id[size_t(slot)]);
-        return out;
-    }
-    std::vector<int> heldBy() const {
-        if (!holds_.comesAndGoes) return {};
-        const std::vector<float> points = inOrder(&Particles::heldBy);
-        return {points.begin(), points.end()};
-    }
-    // Where they are solved for, p / rho^2 in the order of the upload just done.
+    // p / rho^2 in the order of the upload just done, 0 of those behind.
     void setPressures(const std::vector<float>& pressures) {
         std::vector<real> values(pressures.begin(), pressures.end());
         values.resize(size_t(slots_), 0);
@@ -193,12 +197,14 @@ public:
 
     // In the order of ids, in world coordinates.
     std::vector<Particle> download(Vec3 origin) const {
-        std::vector<int> id = copy(id_);
-        std::vector<real> x = copy(now(&Particles::position)), u = copy(now(&Particles::velocity)),
-                          a = copy(now(&Particles::acceleration)),
-                          rho = copy(now(&Particles::density)),
-                          term = copy(now(&Particles::pressureOverRho2)),
-                          ratio = copy(now(&Particles::massRatio));
+        std::vector<int> id = id_.fetch();
+        std::vector<real> x = now(&Particles::position).fetch(),
+                          u = now(&Particles::velocity).fetch(),
+                          a = now(&Particles::acceleration).fetch(),
+                          rho = now(&Particles::density).fetch(),
+                          term = now(&Particles::pressureOverRho2).fetch(),
+                          ratio = now(&Particles::massRatio).fetch();
+        device_.wait();
         const Particles host = onHost(slots_, id, x, u, a, rho, term, ratio);
         std::vector<Particle> out;
         for (const int slot : slotsInOrder(id)) out.push_back(describe(host, slot, origin));
@@ -211,16 +217,17 @@ public:
         if (slot < 0) return {};
         const int first = slot / clusterSize * clusterSize;
         auto vectors = [&](VectorField Particles::*field) {
-            return copy(now(field), vectorOffset(first, 0), vectorSize(clusterSize));
+            return piece(now(field), size_t(vectorOffset(first, 0)), vectorSize(clusterSize));
         };
         auto numbers = [&](ScalarField Particles::*field) {
-            return copy(now(field), size_t(first), size_t(clusterSize));
+            return piece(now(field), size_t(first), size_t(clusterSize));
         };
         std::vector<real> x = vectors(&Particles::position), u = vectors(&Particles::velocity),
                           a = vectors(&Particles::acceleration), rho = numbers(&Particles::density),
                           term = numbers(&Particles::pressureOverRho2), ratio;
         if (holds_.mixture) ratio = numbers(&Particles::massRatio);
-        std::vector<int> own = copy(id_, size_t(first), size_t(clusterSize));
+        std::vector<int> own = piece(id_, size_t(first), size_t(clusterSize));
+        device_.wait();
         const Particles host = onHost(clusterSize, own, x, u, a, rho, term, ratio);
         return describe(host, slot - first, origin);
     }
@@ -232,12 +239,6 @@ private:
 
     static int wholeClusters(int particles) {
         return (particles + clusterSize - 1) / clusterSize * clusterSize;
-    }
-    std::vector<float> inOrder(ScalarField Particles::*field) const {
-        const std::vector<real> values = copy(now(field));
-        std::vector<float> out;
-        for (const int slot : slotsInOrder(copy(id_))) out.push_back(float(values[size_t(slot)]));
-        return out;
     }
     // So many elements, of a buffer that has room for as many as there may ever be.
     template <class T> static void fit(Buffer<T, Device>& buffer, size_t n, size_t most) {
@@ -313,22 +314,11 @@ private:
     template <size_t... k> static Fields makeFields(Device& device, std::index_sequence<k...>) {
         return {((void)k, Numbers(device))...};
     }
-    std::vector<Vec3> inOrder(VectorField Particles::*field) const {
-        std::vector<real> values = copy(now(field));
-        std::vector<Vec3> out;
-        for (const int slot : slotsInOrder(copy(id_))) {
-            const Vector<real> v = load(VectorField{values.data()}, slot);
-            out.push_back({float(v.x), float(v.y), float(v.z)});
-        }
-        return out;
-    }
-    template <class T> std::vector<T> copy(const Buffer<T, Device>& buffer) const {
-        return copy(buffer, 0, buffer.size());
-    }
+    // There once the device has been waited for.
     template <class T>
-    std::vector<T> copy(const Buffer<T, Device>& buffer, size_t first, size_t count) const {
+    std::vector<T> piece(const Buffer<T, Device>& buffer, size_t first, size_t count) const {
         std::vector<T> host(count);
-        device_.download(host.data(), buffer.data() + first, count);
+        device_.fetch(host.data(), buffer.data() + first, count);
         return host;
     }
 

@@ -37,12 +37,15 @@ inline Range withoutOutliers(ValueRange range, const std::vector<int>& counts, b
     return {range.low + bin * float(low), std::min(range.high, range.low + bin * float(high + 1))};
 }
 
-template <class Value, class Device>
-Range write(Device& device, const Particles& p, VertexPlaces out) {
-    const auto range = device.template sum<ValueRange>(p.slots, WriteVertices<Value>{p, out});
+// A GPU is waited for once, for the range and how values are spread over it.
+template <class Value, class Device> Range write(Flow<Device>& flow, VertexPlaces out) {
+    const Particles p = flow.fluid.view();
+    ValueRange range, *there = flow.valueRange.data();
+    flow.device.reduce(p.slots, WriteVertices<Value>{p, out}, there);
+    flow.device.fetch(&range, there, 1);
+    const std::vector<int> counts = flow.device.histogram(p.slots, CountValues<Value>{p, there});
     if (range.high < range.low) return {0, 0};  // there is none
     if (!(range.high > range.low)) return {range.low, range.high};
-    const std::vector<int> counts = device.histogram(p.slots, CountValues<Value>{p, range});
     return withoutOutliers(range, counts, std::is_same_v<Value, DensityValue>);
 }
 
@@ -52,7 +55,7 @@ template <class Device> Range writeSurface(Flow<Device>& flow, VertexPlaces out)
     flow.template onPairsOrFluid<ComputeNormals>();
     flow.template onFluid<TagSurface>();
     flow.template onPairsOrFluid<LeaveOutSpray>();
-    return write<FoundValue>(flow.device, flow.fluid.view(), out);
+    return write<FoundValue>(flow, out);
 }
 
 // Of what the pass finds for each particle from all its neighbours.
@@ -63,7 +66,7 @@ template <class Pass, class Device> Range writeFound(Flow<Device>& flow, VertexP
         else
             flow.device.forEach(flow.fluid.slots(), Pass{v});
     });
-    return write<FoundValue>(flow.device, flow.fluid.view(), out);
+    return write<FoundValue>(flow, out);
 }
 
 // What asks for neighbours.
@@ -85,31 +88,29 @@ template <class Device> Range writeFoundOf(Flow<Device>& flow, VertexPlaces out,
 }
 
 template <class Device> Range writeFluid(Flow<Device>& flow, VertexPlaces out, ColorBy by) {
-    const Particles p = flow.fluid.view();
-    Device& device = flow.device;
     switch (by) {
         case ColorBy::Plain:
-            return write<PlainValue>(device, p, out);
+            return write<PlainValue>(flow, out);
         case ColorBy::Velocity:
-            return write<SpeedValue>(device, p, out);
+            return write<SpeedValue>(flow, out);
         case ColorBy::Pressure:
-            return write<PressureValue>(device, p, out);
+            return write<PressureValue>(flow, out);
         case ColorBy::Density:
-            return write<DensityValue>(device, p, out);
+            return write<DensityValue>(flow, out);
         case ColorBy::Acceleration:
-            return write<AccelerationValue>(device, p, out);
+            return write<AccelerationValue>(flow, out);
         case ColorBy::Id:
-            return write<IdValue>(device, p, out);
+            return write<IdValue>(flow, out);
         case ColorBy::Fluid:
-            return write<FluidValue>(device, p, out);
+            return write<FluidValue>(flow, out);
         case ColorBy::VelocityX:
-            return write<VelocityComponent<0>>(device, p, out);
+            return write<VelocityComponent<0>>(flow, out);
         case ColorBy::VelocityY:
-            return write<VelocityComponent<1>>(device, p, out);
+            return write<VelocityComponent<1>>(flow, out);
         case ColorBy::VelocityZ:
-            return write<VelocityComponent<2>>(device, p, out);
+            return write<VelocityComponent<2>>(flow, out);
         case ColorBy::TimeBin:
-            return write<TimeBinValue>(device, p, out);
+            return write<TimeBinValue>(flow, out);
         case ColorBy::Surface:
         case ColorBy::Vorticity:
         case ColorBy::ShearRate:

@@ -206,8 +206,13 @@ struct StepParameters {
     real cfl, fixedStep;
     real maxStep;    // s, what is asked for and what forces but pressure allow
     real restSpeed;  // below that share of the speed of sound fluid may rest, 0: nothing rests
-    Vector<real> stirCenter, stirVelocity;
-    real stirRadius, stirRate, stirPull;  // m, 1/s, 1/s (Stir)
+};
+
+// What the mouse does to fluid (Stir), relative to the domain's lower corner: in memory of the
+// device, so that it changes without another plan or recording.
+struct Stirring {
+    Vector<real> center, velocity;  // m, m/s
+    real radius, rate, pull;        // m, 1/s, 1/s
 };
 
 // A solid now. Its shape is convex (scene/convex.h), in its own axes and relative to its middle;
@@ -267,6 +272,7 @@ struct View {
     Grid grid;
     StepParameters c;
     StepState* state;
+    const Stirring* stirring;
     Blocks blocks;
     const Screens* screens;  // null: no solid is thin
 };

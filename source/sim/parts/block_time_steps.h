@@ -14,7 +14,9 @@ template <class Device> class BlockTimeSteps : public Part {
 public:
     explicit BlockTimeSteps(Flow<Device>& flow) : flow_(flow), device_(flow.device) {}
 
-    bool areOn() const { return flow_.scene.time.mode == TimeMode::Local; }
+    // A GPU would put all particles in order at each moment, and ask whether the step is over
+    // (whyNotForGpus).
+    bool areOn() const { return !Device::recordsSteps && flow_.scene.time.mode == TimeMode::Local; }
     // All particles take part again, from the beginning of a step.
     void wake() {
         if (!areOn()) return;
@@ -24,10 +26,9 @@ public:
         flow_.setClock(clock);
         device_.forEach(flow_.fluid.slots(), WakeParticles{flow_.fluid.view()});
     }
-    // Where all rest there is nothing to be done but to let time pass; says whether it did. (A GPU
-    // would have to be asked.)
+    // Where all rest there is nothing to be done but to let time pass; says whether it did.
     bool letTimePass() {
-        if (Device::recordsSteps || !areOn() || !flow_.readClock().allRest) return false;
+        if (!areOn() || !flow_.readClock().allRest) return false;
         beginStep();
         device_.forEach(1, ChooseSubstep{flow_.view(), motion_.data(), flow_.fluidCount});
         return true;
@@ -102,7 +103,7 @@ private:
         device_.forEach(blocks(), RestBlocks{flow_.view()});
     }
     void findActive() {
-        flow_.allActive = Device::hostReadable && flow_.readClock().allActive;
+        flow_.allActive = flow_.readClock().allActive;
         if (flow_.allActive) return;
         const View v = flow_.view();
         device_.forEach(v.fluid.slots / clusterSize, FindActiveClusters{v});

@@ -23,7 +23,7 @@ public:
             faces_.push_back(solid.floats() ? ballsOfAFace(flow.scene, solid, sample) : 1);
         }
         loads_.resize(onHost_.size()), touches_.resize(onHost_.size()), also_.resize(1);
-        room_.resize(1);
+        room_.resize(1), target_.resize(1);
         takeInHand(-1);
         if (solids.floats())
             bounces(std::max((flow.fluidCount + clusterSize - 1) / clusterSize * clusterSize,
@@ -32,15 +32,16 @@ public:
     // Null where none floats.
     const RigidBody* bodies() const { return solids_.floats() ? bodies_.data() : nullptr; }
     Springs springs() const { return springs_; }
-    int held() const { return hold_.solid; }
+    int held() const { return held_; }
 
-    // The mouse pulls at a solid, or lets it go.
-    void hold(const Hold& h) {
-        if (h.solid != hold_.solid) {
-            device_.forEach(int(onHost_.size()), LetGo{bodies_.data(), motions_.data()});
-            takeInHand(h.solid);
-        }
-        hold_ = {h.solid, h.target - flow_.scene.domain.min};
+    // The mouse pulls at a solid, or lets it go; says whether that is another one than before.
+    bool hold(const Hold& h) {
+        const Vec3 target = h.target - flow_.scene.domain.min;
+        device_.upload(target_.data(), &target, 1);
+        if (h.solid == held_) return false;
+        device_.forEach(int(onHost_.size()), LetGo{bodies_.data(), motions_.data()});
+        takeInHand(h.solid);
+        return true;
     }
     // `sum(solid)` is the reduction over `count` of what else touches it.
     template <class Sum> void addTouches(int count, const Sum& sum) {
@@ -90,12 +91,12 @@ public:
     void addForces(Plan& plan, Initial initial) {
         plan.add(
             "solid forces", [this] { findForces(); }, initial,
-            hold_.solid >= 0 ? "" : solids_.whyNoneFloats());
+            held_ >= 0 ? "" : solids_.whyNoneFloats());
     }
     void move(Plan& plan, ShareOfStep share) {
         plan.add(
             "floating solids", [this, share] { moveBodies(share); }, Initial::No,
-            hold_.solid >= 0 && share.drifts ? "" : solids_.whyNoneFloats());
+            held_ >= 0 && share.drifts ? "" : solids_.whyNoneFloats());
     }
     void collide(Plan& plan) {
         plan.add(
@@ -112,8 +113,7 @@ private:
         solids_.findLoads();
         const View v = flow_.view();
         if (handMass_ > 0)
-            device_.reduce(v.walls.slots, solids_.sumOf(v, hold_.solid),
-                           loads_.data() + hold_.solid);
+            device_.reduce(v.walls.slots, solids_.sumOf(v, held_), loads_.data() + held_);
         forFloating([&](int s) {
             device_.reduce(v.walls.slots, solids_.sumOf(v, s), loads_.data() + s);
             device_.reduce(v.walls.slots, SumTouches{v, solids_.home(), bodies_.data(), s},
@@ -123,7 +123,7 @@ private:
     void moveBodies(ShareOfStep share) {
         if (handMass_ > 0)
             device_.reduce(flow_.walls.slots(),
-                           FindRoom{flow_.view(), solids_.home(), bodies_.data(), hold_.solid},
+                           FindRoom{flow_.view(), solids_.home(), bodies_.data(), held_},
                            room_.data());
         device_.forEach(solids_.count(), MoveFloating{flow_.view(),
                                                       bodies_.data(),
@@ -131,7 +131,8 @@ private:
                                                       loads_.data(),
                                                       touches_.data(),
                                                       double(particleMass(flow_.scene)),
-                                                      hold_,
+                                                      held_,
+                                                      target_.data(),
                                                       {handMass_, stops_.data(), room_.data()},
                                                       0.5 * share.halvesOfKick,
                                                       share.drifts ? 1.0 : 0.0});
@@ -160,7 +161,7 @@ private:
     // From now on the mouse holds this one, -1: none.
     void takeInHand(int solid) {
         stops_.fill(std::vector<Stops>(1)), loads_.fill(std::vector<SolidLoad>(onHost_.size()));
-        handMass_ = 0;
+        handMass_ = 0, held_ = solid;
         if (solid < 0 || flow_.scene.solids[size_t(solid)].floats()) return;
         solids_.reserveLoads();
         handMass_ = massInHand(flow_.scene, flow_.scene.solids[size_t(solid)]);
@@ -225,7 +226,8 @@ private:
     Flow<Device>& flow_;
     Device& device_;
     Solids<Device>& solids_;
-    Hold hold_;  // target relative to the domain's lower corner
+    int held_ = -1;                         // by the mouse
+    Buffer<Vec3, Device> target_{device_};  // where it is wanted, in MoveFloating
     std::vector<RigidBody> onHost_;
     std::vector<double> faces_;  // balls of a face of each
     Springs springs_{};

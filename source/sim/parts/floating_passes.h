@@ -228,8 +228,9 @@ struct MoveFloating {
     SolidMotion* motions;
     const SolidLoad* loads;
     const Wrench* touches;
-    double fluidMass;  // kg, of a particle
-    Hold hold;         // target relative to the domain's lower corner
+    double fluidMass;    // kg, of a particle
+    int held;            // by the mouse; -1: none
+    const Vec3* target;  // m, where it wants that, relative to the domain's lower corner
     Hand hand;
     double kick, drift;                      // shares of the step
     static constexpr double strongest = 60;  // m/s², of the solid that is held
@@ -239,7 +240,7 @@ struct MoveFloating {
         SolidMotion& m = motions[s];
         const double dt = v.state->dt;
         Wrench w = wrenchOn(s);
-        if (hold.solid == s) pull(w, body, m, v.solids[s]);
+        if (held == s) pull(w, body, m, v.solids[s]);
         if (v.c.dimensions == 2) w.force.z = w.torque.x = w.torque.y = 0;
         const Vec3d spin = spinOf(body, m),
                     spinRate = turning(body, m, w.torque - cross(spin, m.angularMomentum));
@@ -268,8 +269,8 @@ struct MoveFloating {
     HD void pull(Wrench& w, const RigidBody& body, const SolidMotion& m,
                  const SolidState& s) const {
         const double rate = 15;  // 1/s
-        const Vec3d target{hold.target.x, hold.target.y, hold.target.z};
-        const Vec3d wanted = (rate * rate) * (target - Vec3d{s.middle.x, s.middle.y, s.middle.z}) -
+        const Vec3d there{target->x, target->y, target->z};
+        const Vec3d wanted = (rate * rate) * (there - Vec3d{s.middle.x, s.middle.y, s.middle.z}) -
                              (2 * rate) * m.velocity;
         const double size = sqrt(dot(wanted, wanted));
         w.force = w.force + (body.mass * (size > strongest ? strongest / size : 1.0)) * wanted;
@@ -281,14 +282,13 @@ struct MoveFloating {
         SolidMotion& m = motions[s];
         const Vec3d before = m.velocity;
         m.velocity = {0, 0, 0};
-        if (hold.solid != s) {
+        if (held != s) {
             m.acceleration = {0, 0, 0};
             return;
         }
         if (m.left < 0 && !v.solids[s].steady) m.left = v.state->time - dt;
         const Vector<real> at = v.solids[s].middle;
-        const Vec3d way =
-            Vec3d{hold.target.x, hold.target.y, hold.target.z} - Vec3d{at.x, at.y, at.z};
+        const Vec3d way = Vec3d{target->x, target->y, target->z} - Vec3d{at.x, at.y, at.z};
         const double far = sqrt(dot(way, way)), stops = sqrt(strongest * far);
         double speed = far / (dt > time ? dt : time);
         if (speed > fastest) speed = fastest;

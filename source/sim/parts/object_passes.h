@@ -248,16 +248,24 @@ struct MoveObjects {
     }
 };
 
-// Particles that another engine moves: on their way to where that wants them at `arrival`, s,
-// and what they feel until then, N s.
+// What another engine wants of particles: until when, s, they are to be where it said, and how
+// fast the fastest has to go for it, m/s; nothing where there is none. In memory of the device, so
+// that recorded steps go on when it has spoken.
+struct Drive {
+    double arrival = -1;
+    real speed = 0;
+};
+
+// Particles on their way to where that wants them, and what they feel until then, N s.
 struct FollowDriver {
     using Index = int;
     const StepState* state;
     ObjectParticles o;
     VectorField contact, target, impulse;
-    double arrival;
+    const Drive* drive;
     HD void operator()(int i) const {
-        const double left = arrival - (state->time - state->dt);  // the clock is at the step's end
+        const double left =
+            drive->arrival - (state->time - state->dt);  // the clock is at the step's end
         const real share = left > state->dt ? real(state->dt / left) : real(1);
         const Vector<real> x = load(o.position, i);
         store(o.position, i, addScaled(x, share, load(target, i) - x));
@@ -271,12 +279,12 @@ struct FollowDriver {
 struct FindObjectSpeed {
     ObjectParticles o;
     const StepState* state;
-    real least;  // m/s, as fast as a driver has them go, whatever velocities it says
+    const Drive* drive;  // has them go as fast, whatever velocities it says
     HD void addTo(Extremes& e, int i) const {
         const Vector<real> u = load(o.velocity, i), a = load(o.acceleration, i);
         const real speed = squareRoot(dot(u, u)) +
                            (o.grip[i] < 0 ? real(state->dt) * squareRoot(dot(a, a)) : real(0));
-        e.add({float(max(speed * speed, least * least)), 0});
+        e.add({float(max(speed * speed, drive->speed * drive->speed)), 0});
     }
 };
 struct TakeFaster {

@@ -45,6 +45,7 @@ public:
             press_.resize(vectorSize(padded())), pressedBy_.resize(size_t(padded()));
         acceleration_.resize(vectorSize(padded())), torn_.resize(sample_.size()),
             slot_.resize(sample_.size()), speed_.resize(1);
+        drive_.fill({Drive{}});
         bondEnds();
     }
     int count() const { return int(sample_.size()); }
@@ -81,9 +82,13 @@ public:
     void save(RunState& run) {
         if (count() == 0) return;
         ObjectState& s = run.objects;
-        for (const Vec3d& x : doubles(position_)) s.positions.push_back(toFloat(x));
-        for (const Vec3d& v : doubles(velocity_)) s.velocities.push_back(toFloat(v));
-        for (const BondEnd& b : bonds_.download()) s.broken.push_back(b.stiffness <= 0);
+        const std::vector<real> places = position_.fetch(), velocities = velocity_.fetch();
+        const std::vector<BondEnd> bonds = bonds_.fetch();
+        device_.wait();
+        for (const Vec3d& x : vectorsOf(places, sample_.size())) s.positions.push_back(toFloat(x));
+        for (const Vec3d& v : vectorsOf(velocities, sample_.size()))
+            s.velocities.push_back(toFloat(v));
+        for (const BondEnd& b : bonds) s.broken.push_back(b.stiffness <= 0);
     }
     void refresh() {
         if (count() == 0) return;
@@ -126,10 +131,8 @@ public:
     // The fastest of them counts as one of the fluid.
     void findSpeed() {
         if (count() == 0) return;
-        device_.reduce(
-            count(),
-            FindObjectSpeed{particles(), flow_.clock.data(), real(driver_ ? drivenSpeed_ : 0)},
-            speed_.data());
+        device_.reduce(count(), FindObjectSpeed{particles(), flow_.clock.data(), drive_.data()},
+                       speed_.data());
         device_.forEach(1, TakeFaster{flow_.extremes.data(), speed_.data()});
     }
     void addForces(Plan& plan, Initial initial) {
@@ -146,36 +149,40 @@ public:
     ParticleSet<Device>& surfaceSet() { return sorted_; }
     // From now on; null: bonds and grips again.
     void drive(ObjectDriver* driver) {
-        driver_ = driver, origin_ = toDouble(flow_.scene.domain.min);
+        driver_ = driver, arrival_ = -1, origin_ = toDouble(flow_.scene.domain.min);
+        drive_.fill({Drive{}});
         if (!driver) return;
         const double time = flow_.readClock().time;
         for (auto* field : {&target_, &impulse_}) field->resize(vectorSize(padded()));
         fillVectors(acceleration_, std::vector<Vec3>(sample_.size()));
-        exchanged_ = time, arrival_ = -1;
+        exchanged_ = time;
         exchange(time);
     }
     bool isDriven() const { return driver_; }
-    // When its time has come; says whether it had.
-    bool exchange(double time) {
-        if (time < arrival_) return false;
+    double arrival() const { return arrival_; }  // s, when it is to be asked again
+    // When its time has come.
+    void exchange(double time) {
+        if (time < arrival_) return;
         const double passed = time - exchanged_;
-        std::vector<Vec3d> forces =
-            passed > 0 ? doubles(impulse_) : std::vector<Vec3d>(sample_.size());
-        for (Vec3d& f : forces) f = (passed > 0 ? 1 / passed : 0) * f;
-        const std::vector<Vec3d> before = doubles(position_);
-        std::vector<Vec3d> positions = before, velocities = doubles(velocity_);
+        const std::vector<real> impulses = impulse_.fetch(), places = position_.fetch(),
+                                speeds = velocity_.fetch();
+        device_.wait();
+        std::vector<Vec3d> forces = vectorsOf(impulses, sample_.size()),
+                           velocities = vectorsOf(speeds, sample_.size());
+        for (Vec3d& f : forces) f = passed > 0 ? (1 / passed) * f : Vec3d{};
+        const std::vector<Vec3d> before = vectorsOf(places, sample_.size());
+        std::vector<Vec3d> positions = before;
         for (Vec3d& x : positions) x = x + origin_;
         driver_->exchange(time, forces, positions, velocities);
         CHECK(positions.size() == sample_.size() && velocities.size() == sample_.size());
         for (Vec3d& x : positions) x = x - origin_;
-        drivenSpeed_ = 0;
+        double most = 0;
         for (size_t i = 0; i < before.size(); ++i)
-            drivenSpeed_ =
-                std::max(drivenSpeed_, length(positions[i] - before[i]) / driver_->interval());
+            most = std::max(most, length(positions[i] - before[i]) / driver_->interval());
         fillVectors(target_, positions), fillVectors(velocity_, velocities),
             fillVectors(impulse_, std::vector<Vec3d>(sample_.size()));
         exchanged_ = time, arrival_ = time + driver_->interval();
-        return true;
+        drive_.fill({Drive{arrival_, real(most)}});
     }
     void writeVertices(Vertex* out, float fluidSpacing) {
         device_.forEach(count(), WriteObjectVertices{particles(), out, real(fluidSpacing / 2)});
@@ -213,7 +220,7 @@ private:
                                                   {force_.data()},
                                                   {target_.data()},
                                                   {impulse_.data()},
-                                                  arrival_});
+                                                  drive_.data()});
         else
             device_.forEach(count(), MoveObjects{v,
                                                  particles(),
@@ -305,13 +312,6 @@ private:
             for (int k = 0; k < 3; ++k) x[vectorOffset(int(i), k)] = real(values[i][k]);
         buffer.fill(x);
     }
-    std::vector<Vec3d> doubles(const Buffer<real, Device>& buffer) const {
-        const std::vector<real> x = buffer.download();
-        std::vector<Vec3d> out(sample_.size());
-        for (size_t i = 0; i < out.size(); ++i)
-            for (int k = 0; k < 3; ++k) out[i][k] = double(x[vectorOffset(int(i), k)]);
-        return out;
-    }
 
     Flow<Device>& flow_;
     Device& device_;
@@ -326,8 +326,7 @@ private:
     ObjectDriver* driver_ = nullptr;
     double exchanged_ = 0,
            arrival_ = 0;  // s: when it was asked last, and when particles are to be where it said
-    double drivenSpeed_ = 0;  // m/s, the most on the way there
-    Vec3d origin_;            // m, the domain's lower corner
+    Vec3d origin_;        // m, the domain's lower corner
     Buffer<real, Device> target_{device_}, impulse_{device_}, press_{device_}, pressedBy_{device_},
         given_{device_};
     Buffer<real, Device> position_{device_}, velocity_{device_}, acceleration_{device_},
@@ -340,6 +339,7 @@ private:
     Buffer<GripKeys, Device> grips_{device_};
     Buffer<MotionKey, Device> keys_{device_};
     Buffer<Extremes, Device> speed_{device_};
+    Buffer<Drive, Device> drive_{device_};
     ParticleSet<Device> sorted_{device_, Kind::Objects};
     Buffer<real, Device> surfaceVelocity_{device_}, surfaceHome_{device_}, surfaceRadius_{device_},
         surfaceObject_{device_}, surfaceTorn_{device_}, force_{device_};

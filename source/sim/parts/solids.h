@@ -76,6 +76,8 @@ public:
         keepMasses(flow_.walls.view());
         moves_ = true;
         flow_.walls.accelerate();
+        flow_.search.sortWalls(
+            flow_.walls);  // into the order that they have: makes room for others
         return true;
     }
     // How those that float or are dragged move; not owned.
@@ -202,23 +204,27 @@ public:
                                    scaled(loads.other[end])});
         }
     }
-    std::vector<SolidPose> poses() {
+    // Asks for where all are now: poses() and at() say so once the device has been waited for.
+    void look() {
         if (moves_) placeNow();
+        seen_.resize(states_.size());
+        device_.fetch(seen_.data(), states_.data(), seen_.size());
+    }
+    std::vector<SolidPose> poses() const {
         std::vector<SolidPose> out;
-        for (const SolidState& s : states_.download())
+        for (const SolidState& s : seen_)
             out.push_back(
                 {toVec3d(s.middle), {toVec3d(s.axis[0]), toVec3d(s.axis[1]), toVec3d(s.axis[2])}});
         return out;
     }
     // The one whose surface is within a spacing of a point, m in world coordinates; -1: none.
-    int at(Vec3d point) {
+    int at(Vec3d point) const {
         const Scene& scene = flow_.scene;
         const Vector<real> x = toReal(point - toDouble(scene.domain.min));
-        const std::vector<SolidState> states = states_.download();
-        for (size_t s = 0; s < states.size(); ++s) {
-            const Vector<real> arm = x - states[s].middle;
-            const Vector<real> own{dot(arm, states[s].axis[0]), dot(arm, states[s].axis[1]),
-                                   dot(arm, states[s].axis[2])};
+        for (size_t s = 0; s < seen_.size(); ++s) {
+            const Vector<real> arm = x - seen_[s].middle;
+            const Vector<real> own{dot(arm, seen_[s].axis[0]), dot(arm, seen_[s].axis[1]),
+                                   dot(arm, seen_[s].axis[2])};
             if (convexOf(scene.solids[s], scene.simulation.dimensions)
                     .nearest(toVec3d(own))
                     .distance < double(scene.simulation.spacing))
@@ -326,6 +332,7 @@ private:
     double speed_ = 0;  // m/s
     Vector<real> size_{};
     Buffer<SolidState, Device> states_{device_};
+    std::vector<SolidState> seen_;  // by look()
     Buffer<MotionKey, Device> keys_{device_};
     Buffer<real, Device> fields_{device_};  // of meshes, one after the other
     Buffer<int, Device> solidOf_{device_};

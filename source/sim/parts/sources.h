@@ -33,12 +33,15 @@ public:
         most_ = int(mostFluid(scene, flow.fluidCount)) + int(points.size());
         flow.fluid.comeAndGo(slotsFor(most_, int(points.size())));
     }
-    // Of the fluid, now.
-    int count() const { return any() ? tally().there : flow_.fluidCount; }
-    Tally tally() const {
-        Tally t;
-        if (any()) flow_.device.download(&t, tally_.data(), 1);
-        return t;
+    // Asks for what count() and tally() say, once the device has been waited for; the host's own
+    // memory is looked at whenever they are asked.
+    void look() {
+        if (any()) flow_.device.fetch(&seen_, tally_.data(), 1);
+    }
+    int count() { return any() ? tally().there : flow_.fluidCount; }
+    const Tally& tally() {
+        if constexpr (Device::hostReadable) look();
+        return seen_;
     }
 
     // For pictures: see VertexPlaces.
@@ -68,11 +71,10 @@ public:
         flow_.device.upload(tally_.data(), &t, 1);
         flow_.fluid.setHeldBy(state.particles.heldBy);
     }
-    void save(RunState& state) const {
+    void save(RunState& state) {
         if (!any()) return;
-        const Tally t = tally();
+        const Tally& t = tally();
         state.sources = {t.time, t.came, t.left, t.missed, t.firstId};
-        state.particles.ids = flow_.fluid.ids(), state.particles.heldBy = flow_.fluid.heldBy();
     }
     // Once a step, where forces are evaluated for the first time.
     void place(Plan& plan, Initial initial, bool) {
@@ -181,6 +183,7 @@ private:
     Buffer<Count, Device> counts_{flow_.device};
     Buffer<int, Device> numbers_{flow_.device};
     void (Flow<Device>::*borrow_)() = nullptr;
+    Tally seen_;
     int most_ = 0;
     double longestStep_ = 1e9;  // s
 };

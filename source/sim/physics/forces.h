@@ -181,14 +181,15 @@ struct StirFluid {
     View v;
     HD void operator()(Lanes4 i) const {
         using R = Real<Lanes4>;
-        const Vector<R> center{v.c.stirCenter.x, v.c.stirCenter.y, v.c.stirCenter.z};
-        const Vector<R> drag{v.c.stirVelocity.x, v.c.stirVelocity.y, v.c.stirVelocity.z};
+        const Stirring s = *v.stirring;
+        const Vector<R> center{s.center.x, s.center.y, s.center.z};
+        const Vector<R> drag{s.velocity.x, s.velocity.y, s.velocity.z};
         const Vector<R> d = load(v.fluid.position, i) - center, u = load(v.fluid.velocity, i);
-        const R weight = max(R(1) - dot(d, d) * R(1 / (v.c.stirRadius * v.c.stirRadius)), R(0));
-        R share = weight * R(min(real(1), v.c.stirRate * real(v.state->dt)));
+        const R weight = max(R(1) - dot(d, d) * R(1 / (s.radius * s.radius)), R(0));
+        R share = weight * R(min(real(1), s.rate * real(v.state->dt)));
         if (v.fluid.heldBy.data)  // what a source holds goes as that wants
             share = select(load(v.fluid.heldBy, i) > R(0), R(0), share);
-        const Vector<R> wanted = subtractScaled(drag, R(v.c.stirPull), d);
+        const Vector<R> wanted = subtractScaled(drag, R(s.pull), d);
         store(v.fluid.velocity, i, addScaled(u, share, wanted - u));
     }
 };

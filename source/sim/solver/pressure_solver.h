@@ -10,7 +10,7 @@ namespace spindrift::LANES {
 template <class Device> class PressureSolver {
 public:
     explicit PressureSolver(Flow<Device>& flow) : flow_(flow) {
-        error_.resize(1), progress_.resize(1);
+        error_.fill({SolveError{}}), progress_.fill({SolveProgress{}});
     }
 
     void begin() {

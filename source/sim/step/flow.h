@@ -46,7 +46,8 @@ template <class Device> struct Flow {
         if (scene.time.integrator == Integrator::PredictorCorrector) fluid.keepState();
         uploadWalls();
         clock.resize(1);
-        extremes.resize(1);
+        extremes.resize(1), valueRange.resize(1);
+        stirring.resize(1);
     }
     Flow(const Flow&) = delete;
 
@@ -55,10 +56,7 @@ template <class Device> struct Flow {
         v.fluid = fluid.view(), v.walls = walls.view();
         search.show(v, fluid.cellStart(), walls.cellStart());
         v.c = model.shared;
-        v.c.stirCenter = toVector(stir.center - scene.domain.min);
-        v.c.stirVelocity = toVector(stir.velocity);
-        v.c.stirRadius = stir.radius, v.c.stirRate = stir.rate, v.c.stirPull = stir.pull;
-        v.state = clock.data();
+        v.state = clock.data(), v.stirring = stirring.data();
         v.solids = solids, v.solidCount = solidCount, v.screens = screens;
         v.blocks = blocks;
         if (allActive) v.fluid.active = v.walls.active = nullptr;
@@ -152,6 +150,12 @@ template <class Device> struct Flow {
         device.upload(clock.data(), &s, 1);
         stop = s.stop;
     }
+    void setStir(const Stir& s) {
+        stir = s;
+        const Stirring now{toVector(s.center - scene.domain.min), toVector(s.velocity), s.radius,
+                           s.rate, s.pull};
+        device.upload(stirring.data(), &now, 1);
+    }
     // Runs ask for the same time step by step, which costs a GPU nothing.
     void stopAt(double time) {
         if (std::exchange(stop, time) != time) device.upload(&clock.data()->stop, &time, 1);
@@ -173,7 +177,10 @@ template <class Device> struct Flow {
         p.ids.empty() ? fluid.upload(p.positions, p.velocities, densitiesOf(state), 0)
                       : fluid.upload(p.positions, p.velocities, densitiesOf(state), p.ids);
     }
-    void uploadWalls() { walls.upload(wallsAtHome, {}, {}, fluidCount); }
+    void uploadWalls() {
+        walls.upload(wallsAtHome, {}, {}, fluidCount);
+        walls.setPressures({});  // the classic formulation's keep none
+    }
     void addBuffers() {
         fluid.addForces(usesHalfLists() && hasMixingForces(scene),
                         scene.fluid.surfaceTension > 0 || showsFound);
@@ -189,12 +196,14 @@ template <class Device> struct Flow {
     std::vector<SolidSample> solidSamples;
     Model model{&scene};
     Stir stir;
+    Buffer<Stirring, Device> stirring{device};
     ParticleSet<Device> fluid{device, Kind::Fluid}, walls{device, Kind::Walls};
     NeighbourSearch<Device> search;
     Buffer<StepState, Device> clock{device};
     double stop = std::numeric_limits<double>::quiet_NaN();  // the clock's, once it has been set
     Buffer<Extremes, Device> extremes{device};
-    bool showsFound = false;  // a picture has asked for what neighbours tell
+    Buffer<ValueRange, Device> valueRange{device};  // of the last picture
+    bool showsFound = false;                        // a picture has asked for what neighbours tell
     // What parts show to all passes.
     SolidState* solids = nullptr;
     int solidCount = 0;

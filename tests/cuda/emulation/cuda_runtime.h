@@ -4,7 +4,8 @@
 // GPU where that finds bugs:
 // - device memory can be touched by kernels and copies only; the host, and whoever runs off its
 // end, crashes;
-// - work is done when somebody waits for it, not when it is asked for;
+// - work is done when somebody waits for it, not when it is asked for; copies to and from memory
+// that is not pinned are waited for, as a GPU may do;
 // - fresh memory is full of NaNs;
 // - threads run one after the other, in either order (emulation.h), so that a result that depends
 // on it shows. What it can't show: races between threads of different blocks, speed, and what the
@@ -40,6 +41,7 @@ enum cudaError_t {
     cudaErrorNoDevice = 100,
     cudaErrorInvalidDevice = 101,
     cudaErrorNoKernelImageForDevice = 209,
+    cudaErrorNotReady = 600,
     cudaErrorIllegalAddress = 700,
     cudaErrorStreamCaptureUnsupported = 900,
     cudaErrorGraphExecUpdateFailure = 910
@@ -95,6 +97,8 @@ cudaError_t cudaGetLastError();
 const char* cudaGetErrorString(cudaError_t);
 cudaError_t cudaMalloc(void**, size_t);
 cudaError_t cudaFree(void*);
+cudaError_t cudaMallocHost(void**, size_t);
+cudaError_t cudaFreeHost(void*);
 cudaError_t cudaMemcpyAsync(void*, const void*, size_t, cudaMemcpyKind, cudaStream_t);
 cudaError_t cudaMemsetAsync(void*, int, size_t, cudaStream_t);
 cudaError_t cudaStreamCreateWithFlags(cudaStream_t*, unsigned);
@@ -121,13 +125,17 @@ cudaError_t cudaGraphExecDestroy(cudaGraphExec_t);
 cudaError_t cudaGraphLaunch(cudaGraphExec_t, cudaStream_t);
 cudaError_t cudaEventCreate(cudaEvent_t*);
 cudaError_t cudaEventRecord(cudaEvent_t, cudaStream_t);
+cudaError_t cudaEventQuery(cudaEvent_t);
 cudaError_t cudaEventElapsedTime(float*, cudaEvent_t, cudaEvent_t);
 cudaError_t cudaEventDestroy(cudaEvent_t);
 
 namespace emulation {
 cudaError_t codeForDevice();
+void noteLaunch(cudaStream_t);
 // Work that a stream does later, in order, with device memory open.
 cudaError_t enqueue(cudaStream_t, std::function<void()>);
+// All of it, now.
+void finish(cudaStream_t);
 // Every thread of every block.
 void runGrid(dim3 grid, dim3 block, const std::function<void()>& thread);
 }  // namespace emulation
@@ -141,6 +149,7 @@ cudaError_t cudaLaunchKernelEx(const cudaLaunchConfig_t* c, void (*kernel)(Param
                                Arguments&&... arguments) {
     if (c->gridDim.x == 0 || c->blockDim.x == 0 || c->blockDim.x > 1024)
         return cudaErrorInvalidValue;
+    emulation::noteLaunch(c->stream);
     std::tuple<std::decay_t<Parameters>...> copies(std::forward<Arguments>(arguments)...);
     return emulation::enqueue(c->stream, [copies, kernel, grid = c->gridDim, block = c->blockDim] {
         emulation::runGrid(grid, block, [&] { std::apply(kernel, copies); });

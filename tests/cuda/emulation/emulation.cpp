@@ -29,6 +29,8 @@ struct EmulatedStream {
 };
 struct EmulatedEvent {
     std::chrono::steady_clock::time_point time;
+    EmulatedStream* stream = nullptr;
+    int64_t pending = 0;  // times that it is still to be reached
 };
 
 dim3 threadIdx, blockIdx, blockDim, gridDim;
@@ -50,6 +52,15 @@ struct Region {
 };
 std::map<void*, Region> regions;
 size_t used = 0;
+std::map<const char*, size_t> pinned;  // bytes
+
+bool isPinned(const void* p) {
+    const auto* byte = static_cast<const char*>(p);
+    const auto after = pinned.upper_bound(byte);
+    if (after == pinned.begin()) return false;
+    const auto& [begin, bytes] = *std::prev(after);
+    return byte < begin + bytes;
+}
 
 void protect(int how) {
     for (const auto& [p, r] : regions) mprotect(r.pages, r.bytes, how);
@@ -131,10 +142,16 @@ cudaError_t codeForDevice() {
     return machine.codeFits ? cudaSuccess : cudaErrorNoKernelImageForDevice;
 }
 
+void noteLaunch(cudaStream_t s) { counts.launches += !s->recording; }
+
 cudaError_t enqueue(cudaStream_t s, Work work) {
     if (machine.lost) return alive();
     (s->recording ? s->recording->work : s->queue).push_back(std::move(work));
     return cudaSuccess;
+}
+
+void finish(cudaStream_t s) {
+    if (!machine.lost) drain(s);
 }
 
 void runGrid(dim3 grid, dim3 block, const Work& thread) {
@@ -215,6 +232,7 @@ cudaError_t cudaMalloc(void** p, size_t bytes) {
 }
 cudaError_t cudaFree(void* p) {
     if (!p) return cudaSuccess;
+    ++counts.waits;
     for (EmulatedStream* s : streams) drain(s);
     const auto found = regions.find(p);
     if (found == regions.end()) die("memory is freed that was not allocated");
@@ -223,9 +241,23 @@ cudaError_t cudaFree(void* p) {
     regions.erase(found);
     return alive();
 }
-cudaError_t cudaMemcpyAsync(void* to, const void* from, size_t bytes, cudaMemcpyKind,
+cudaError_t cudaMallocHost(void** p, size_t bytes) {
+    if (machine.lost) return alive();
+    *p = std::malloc(bytes);
+    pinned[static_cast<char*>(*p)] = bytes;
+    return *p ? cudaSuccess : cudaErrorMemoryAllocation;
+}
+cudaError_t cudaFreeHost(void* p) {
+    pinned.erase(static_cast<char*>(p));
+    std::free(p);
+    return cudaSuccess;
+}
+cudaError_t cudaMemcpyAsync(void* to, const void* from, size_t bytes, cudaMemcpyKind kind,
                             cudaStream_t s) {
-    return enqueue(s, [=] { std::memcpy(to, from, bytes); });
+    ++counts.copies, counts.copiedBytes += int64_t(bytes);
+    const cudaError_t asked = enqueue(s, [=] { std::memcpy(to, from, bytes); });
+    const bool goesBy = isPinned(kind == cudaMemcpyHostToDevice ? from : to);
+    return asked != cudaSuccess || goesBy ? asked : cudaStreamSynchronize(s);
 }
 cudaError_t cudaMemsetAsync(void* p, int value, size_t bytes, cudaStream_t s) {
     return enqueue(s, [=] { std::memset(p, value, bytes); });
@@ -242,6 +274,7 @@ cudaError_t cudaStreamDestroy(cudaStream_t s) {
 }
 cudaError_t cudaStreamSynchronize(cudaStream_t s) {
     if (s && s->recording) return cudaErrorStreamCaptureUnsupported;
+    ++counts.waits;
     if (s && !machine.lost) drain(s);
     return alive();
 }
@@ -309,7 +342,7 @@ cudaError_t cudaGraphExecUpdate(cudaGraphExec_t e, cudaGraph_t g, cudaGraphExecU
 }
 cudaError_t cudaGraphExecDestroy(cudaGraphExec_t e) { return delete e, cudaSuccess; }
 cudaError_t cudaGraphLaunch(cudaGraphExec_t e, cudaStream_t s) {
-    ++counts.replays;
+    ++counts.replays, ++counts.launches;
     if (machine.lost) return alive();
     s->queue.insert(s->queue.end(), e->work.begin(), e->work.end());
     return cudaSuccess;
@@ -317,7 +350,12 @@ cudaError_t cudaGraphLaunch(cudaGraphExec_t e, cudaStream_t s) {
 
 cudaError_t cudaEventCreate(cudaEvent_t* e) { return *e = new EmulatedEvent, cudaSuccess; }
 cudaError_t cudaEventRecord(cudaEvent_t e, cudaStream_t s) {
-    return enqueue(s, [e] { e->time = std::chrono::steady_clock::now(); });
+    e->stream = s, ++e->pending;
+    return enqueue(s, [e] { e->time = std::chrono::steady_clock::now(), --e->pending; });
+}
+cudaError_t cudaEventQuery(cudaEvent_t e) {
+    if (machine.keepsUp && e->pending > 0 && !machine.lost) drain(e->stream);
+    return machine.lost ? alive() : e->pending > 0 ? cudaErrorNotReady : cudaSuccess;
 }
 cudaError_t cudaEventElapsedTime(float* ms, cudaEvent_t a, cudaEvent_t b) {
     *ms = std::chrono::duration<float, std::milli>(b->time - a->time).count();

@@ -1,8 +1,12 @@
 // What only an emulated GPU can show: failing drivers, lost devices, the order of threads, and what
 // is done how often.
 #include "app/frame_bench.h"
+#ifdef SPINDRIFT_WINDOW
+#include "app/window/player.h"
+#endif
 #include "core/error.h"
 #include "cuda/gpu.h"
+#include "device/cuda.h"
 #include "emulation.h"
 #include "sim/make_simulation.h"
 
@@ -171,6 +175,38 @@ TEST_F(EmulatedGpu, BenchmarkOfFramesAndSwitchingWorks) {
     EXPECT_EQ(row["vertices"], "written in place");
     for (const char* key : {"particles", "frame_ms", "switch_to_cpu_ms", "switch_back_ms"})
         EXPECT_GT(row[key], 0) << key;
+}
+
+#ifdef SPINDRIFT_WINDOW
+TEST_F(EmulatedGpu, TheWindowPutsLocalStepsBack) {
+    scene.compute.backend = Backend::Cuda;
+    Start begin;
+    begin.scene = scene;
+    Player player({begin, makeSimulation(scene)});
+    bool moved = false;
+    ASSERT_TRUE(player.collect(moved));
+    player.scene.time.mode = TimeMode::Local;
+    player.knobsChanged();
+    ASSERT_TRUE(player.collect(moved));
+    EXPECT_EQ(player.scene.time.mode, scene.time.mode);
+    EXPECT_NE(player.notice.find("local steps (time.mode)"), std::string::npos) << player.notice;
+    EXPECT_EQ(player.halted, "");
+    EXPECT_NO_THROW(player.goOnWith(scene.simulation.formulation, Backend::Cpu));
+    player.scene.time.mode = TimeMode::Local;
+    player.knobsChanged();
+    ASSERT_TRUE(player.collect(moved));
+    EXPECT_EQ(player.scene.time.mode, TimeMode::Local);
+    EXPECT_THROW(player.goOnWith(scene.simulation.formulation, Backend::Cuda), Error);
+    EXPECT_EQ(player.simulation().cudaDevice(), hostMemory) << "nothing has changed";
+}
+#endif
+
+// What reads memory before it is written shows in every test.
+TEST_F(EmulatedGpu, FreshMemoryIsNoNumber) {
+    Cuda device(0);
+    Buffer<float, Cuda> buffer(device);
+    buffer.resize(100);
+    for (const float x : buffer.download()) EXPECT_TRUE(std::isnan(x));
 }
 
 // The emulation itself: it must notice what it is there to notice.

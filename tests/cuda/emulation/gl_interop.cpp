@@ -26,8 +26,10 @@ cudaError_t cudaGraphicsGLRegisterBuffer(cudaGraphicsResource** r, GLuint buffer
 cudaError_t cudaGraphicsUnregisterResource(cudaGraphicsResource* r) {
     return delete r, cudaSuccess;
 }
-cudaError_t cudaGraphicsMapResources(int, cudaGraphicsResource** r, cudaStream_t) {
+// The default stream stands for a mistake: kernels of another one would not come behind it.
+cudaError_t cudaGraphicsMapResources(int, cudaGraphicsResource** r, cudaStream_t stream) {
     if (machine.lost) return cudaErrorIllegalAddress;
+    if (!stream) return cudaErrorInvalidValue;
     GLint64 bytes = 0;
     glGetNamedBufferParameteri64v((*r)->buffer, GL_BUFFER_SIZE, &bytes);
     if ((*r)->mapped || bytes != (*r)->bytes)
@@ -42,8 +44,10 @@ cudaError_t cudaGraphicsResourceGetMappedPointer(void** p, size_t* bytes, cudaGr
     *bytes = size_t(r->bytes);
     return r->mapped ? cudaSuccess : cudaErrorInvalidValue;
 }
-cudaError_t cudaGraphicsUnmapResources(int, cudaGraphicsResource** r, cudaStream_t) {
-    if (!(*r)->mapped) return cudaErrorInvalidValue;
+// GL goes on behind the stream's work.
+cudaError_t cudaGraphicsUnmapResources(int, cudaGraphicsResource** r, cudaStream_t stream) {
+    if (!(*r)->mapped || !stream) return cudaErrorInvalidValue;
+    emulation::finish(stream);
     glUnmapNamedBuffer((*r)->buffer);
     (*r)->mapped = nullptr;
     return cudaSuccess;
