@@ -47,6 +47,7 @@ constexpr Shortcut Shortcuts[] = {
     {"--video", "output.video", "FILE", "a film of the run: mp4, mkv, webm (needs ffmpeg)"},
     {"--series", "output.series", "FILE",
      "particles at every frame, for ParaView and others: pvd, xdmf, ply, csv"},
+    {"--surface", "output.surface", "FILE", "the fluid's surface at every frame: ply, obj, vdb"},
     {"--fps", "output.fps", "RATE", "frames and rows a second of simulated time"},
     {"--csv", "output.csv", "FILE", "time series as CSV, - = standard output"},
     {"--json", "output.json", "FILE", "time series as JSON, - = standard output"},
@@ -113,7 +114,12 @@ std::string whyNoWindow() {
 #endif
 }
 
-int runScene(const RunOptions& options) {
+// Goes on as spindrift-surface, which has OpenVDB, where that lies beside this program.
+void becomeMesher(const char* const* argv) {
+    if (!canMeshFluid()) os::becomeNeighbour("spindrift-surface", const_cast<char**>(argv));
+}
+
+int runScene(const RunOptions& options, const char* const* argv) {
     Start start = chooseStart(options.scene, options.choices);
     Scene& scene = start.scene;
     if (options.printConfig) {
@@ -131,13 +137,14 @@ int runScene(const RunOptions& options) {
         const Output& output = scene.output;
         for (const std::string& wanted :
              {output.screenshot, output.frames, output.video, output.csv, output.json, output.hdf5,
-              output.particles, output.series, output.checkpoint})
+              output.particles, output.series, output.surface, output.checkpoint})
             if (!wanted.empty())
                 fmt::print(stderr, "spindrift: {}: not written by the window; add --headless\n",
                            wanted);
         return runWindow(std::move(start));
     }
 #endif
+    if (!scene.output.surface.empty()) becomeMesher(argv);
     return runHeadless(start, options.quiet);
 }
 
@@ -362,10 +369,14 @@ CLI::App* addSurface(CLI::App& app, SurfaceOptions& options) {
         ->type_name("NAME");
     command->add_option("--spacing", options.spacing, "of the particles, m; found without it")
         ->check(CLI::PositiveNumber);
-    command->add_option("--cell", options.cell, "of the grid, in spacings; 0.5 without it")
+    command->add_option("--cell", options.method.cell, "of the grid, in spacings; 0.5 without it")
         ->check(CLI::Range(0.1, 2.0));
-    command->add_option("--smooth", options.smoothings, "how often it is smoothed; 3 without it")
+    command
+        ->add_option("--smooth", options.method.smoothings,
+                     "how often it is smoothed; 3 without it, 1 with --anisotropic")
         ->check(CLI::Range(0, 100));
+    command->add_flag("--anisotropic", options.method.anisotropic,
+                      "of kernels that are flat along the surface: smoother, and slower");
     return command;
 }
 
@@ -415,14 +426,14 @@ int runCommandLine(int argc, const char* const* argv) {
         if (error.get_exit_code() == 0) return app.exit(error);  // help, version
         misuse(fmt::format("{}; `spindrift --help` lists all options", error.what()));
     }
-    if (*runCommand) return runScene(run);
+    if (*runCommand) return runScene(run, argv);
     if (*explainCommand) return explain(chooseScene(explained.scene, explained.choices));
     if (*compareCommand) return compare(comparison);
     if (*benchCommand) return runBench(benchmark);
     if (*stressCommand) return stress(stressOptions);
     if (*validateCommand) return validate(validation);
     if (*surfaceCommand) {
-        if (!canMeshFluid()) os::becomeNeighbour("spindrift-surface", const_cast<char**>(argv));
+        becomeMesher(argv);
         return makeSurfaces(surfaces);
     }
     if (*schemaCommand) writeText("-", asMarkdown ? knobReference() : jsonSchema());

@@ -1,9 +1,12 @@
 #include "app/fluid_mesh.h"
 
+#include "app/stretched_kernels.h"
+
 #include <openvdb/openvdb.h>
 #include <openvdb/points/PointConversion.h>
 #include <openvdb/points/PointRasterizeSDF.h>
 #include <openvdb/tools/Filter.h>
+#include <openvdb/tools/LevelSetRebuild.h>
 #include <openvdb/tools/VolumeToMesh.h>
 
 #include <algorithm>
@@ -12,6 +15,7 @@
 namespace spindrift {
 
 bool canMeshFluid() { return true; }
+void requireFluidMeshes(const std::string&) {}
 
 struct FluidLevelSet::Grid {
     openvdb::FloatGrid::Ptr distances;
@@ -27,6 +31,17 @@ std::vector<openvdb::Vec3d> pointsOf(const std::vector<Vec3d>& places) {
     points.reserve(places.size());
     for (const Vec3d& p : places) points.emplace_back(p.x, p.y, p.z);
     return points;
+}
+
+openvdb::FloatGrid::Ptr smoothSpheres(const std::vector<openvdb::Vec3d>& places, double spacing,
+                                      double cell) {
+    // Some eight particles a cell of their grid, as OpenVDB likes it.
+    const auto points = openvdb::points::createPointDataGrid<openvdb::points::NullCodec,
+                                                             openvdb::points::PointDataGrid>(
+        places, *openvdb::math::Transform::createLinearTransform(2 * spacing));
+    const double radius = 0.8 * spacing, search = 2.2 * spacing;
+    return openvdb::points::rasterizeSmoothSpheres(
+        *points, radius, search, Band, openvdb::math::Transform::createLinearTransform(cell));
 }
 
 double volumeOf(const FluidMesh& mesh) {
@@ -49,6 +64,11 @@ double areaOf(const FluidMesh& mesh) {
     return two / 2;
 }
 
+int smoothingsOf(const SurfaceMethod& method) {
+    if (method.smoothings >= 0) return method.smoothings;
+    return method.anisotropic ? 1 : 3;
+}
+
 FluidMesh meshAt(const openvdb::FloatGrid& distances, double shift) {
     std::vector<openvdb::Vec3s> points;
     std::vector<openvdb::Vec3I> triangles;
@@ -69,20 +89,17 @@ FluidMesh meshAt(const openvdb::FloatGrid& distances, double shift) {
 
 }  // namespace
 
-FluidLevelSet::FluidLevelSet(const std::vector<Vec3d>& particles, double spacing, double cell,
-                             int smoothings)
-    : grid_(std::make_unique<Grid>()), farthest_(std::min(0.45, 0.9 * Band * cell) * spacing) {
+FluidLevelSet::FluidLevelSet(const std::vector<Vec3d>& particles, double spacing,
+                             const SurfaceMethod& method)
+    : grid_(std::make_unique<Grid>()),
+      farthest_(std::min(0.45, 0.9 * Band * method.cell) * spacing) {
     openvdb::initialize();
-    // Some eight particles a cell of their grid, as OpenVDB likes it.
-    const auto points = openvdb::points::createPointDataGrid<openvdb::points::NullCodec,
-                                                             openvdb::points::PointDataGrid>(
-        pointsOf(particles), *openvdb::math::Transform::createLinearTransform(2 * spacing));
-    const double radius = 0.8 * spacing, search = 2.2 * spacing;
-    grid_->distances = openvdb::points::rasterizeSmoothSpheres(
-        *points, radius, search, Band,
-        openvdb::math::Transform::createLinearTransform(cell * spacing));
+    const std::vector<openvdb::Vec3d> places = pointsOf(particles);
+    const double cell = method.cell * spacing;
+    grid_->distances = method.anisotropic ? stretchedKernels(places, spacing, cell)
+                                          : smoothSpheres(places, spacing, cell);
     openvdb::tools::Filter<openvdb::FloatGrid> filter(*grid_->distances);
-    if (smoothings > 0) filter.mean(1, smoothings);
+    if (const int times = smoothingsOf(method); times > 0) filter.mean(1, times);
 }
 FluidLevelSet::~FluidLevelSet() = default;
 
@@ -104,14 +121,12 @@ FluidMesh FluidLevelSet::mesh(double volume, double& shift) const {
 }
 
 bool FluidLevelSet::writeVdb(const std::string& path, double shift) const {
-    const openvdb::FloatGrid::Ptr shifted = grid_->distances->deepCopy();
-    for (auto value = shifted->beginValueOn(); value; ++value)
-        value.setValue(*value - float(shift));
-    shifted->setName("surface");
-    shifted->setGridClass(openvdb::GRID_LEVEL_SET);
+    const openvdb::FloatGrid::Ptr level =
+        openvdb::tools::levelSetRebuild(*grid_->distances, float(shift), float(Band));
+    level->setName("surface");
     try {
         openvdb::io::File file(path);
-        file.write({shifted});
+        file.write({level});
         file.close();
     } catch (const openvdb::Exception&) { return false; }
     return true;

@@ -17,23 +17,34 @@ struct FluidMesh {
     double volume = 0;                              // m^3, enclosed
 };
 
+// How the surface is found.
+struct SurfaceMethod {
+    double cell = 0.5;  // of the grid, in spacings
+    // How often the distances are averaged with their neighbours; -1: 3, with anisotropic
+    // kernels 1.
+    int smoothings = -1;
+    bool anisotropic = false;  // kernels are flat along the surface (Yu & Turk 2013)
+};
+
 // Whether this program can; spindrift-surface can.
 bool canMeshFluid();
+// Throws Error (Usage) where it can't; `what` can't be made then.
+void requireFluidMeshes(const std::string& what);
 
 // How far places are from the fluid's surface. Particles are smoothed spheres (Zhu & Bridson 2005),
-// so that flat fluid has a flat surface and drops are round; where it lies exactly is chosen so
-// that it encloses the fluid's volume.
+// so that flat fluid has a flat surface and drops are round, or anisotropic kernels; where it lies
+// exactly is chosen so that it encloses the fluid's volume.
 class FluidLevelSet {
 public:
-    // `spacing` of the particles, m; `cell` of the grid, in spacings; how often the distances are
-    // averaged with their neighbours. Throws Error (Usage) where this program has no OpenVDB.
-    FluidLevelSet(const std::vector<Vec3d>& particles, double spacing, double cell, int smoothings);
+    // Places and spacing of the particles in m. Throws Error (Usage) where this program has no
+    // OpenVDB.
+    FluidLevelSet(const std::vector<Vec3d>& particles, double spacing, const SurfaceMethod&);
     ~FluidLevelSet();
     // Closed, and of this volume, m^3, as far as a shift of less than half a spacing reaches.
     // `shift` becomes what was needed, m.
     FluidMesh mesh(double volume, double& shift) const;
-    // The distances less `shift`, as a grid "surface" of an OpenVDB file. Returns whether all of it
-    // was written.
+    // The level set around what mesh() has, as a grid "surface" of an OpenVDB file. Returns whether
+    // all of it was written.
     bool writeVdb(const std::string& path, double shift) const;
 
 private:

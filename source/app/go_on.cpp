@@ -35,6 +35,7 @@ constexpr NamedOutput Outputs[] = {{"--csv ", &Output::csv},
                                    {"--frames ", &Output::frames},
                                    {"--video ", &Output::video},
                                    {"--series ", &Output::series},
+                                   {"--surface ", &Output::surface},
                                    {"--screenshot ", &Output::screenshot},
                                    {"--set output.particles=", &Output::particles}};
 

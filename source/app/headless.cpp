@@ -4,11 +4,12 @@
 #include "app/explain.h"
 #include "app/film.h"
 #include "app/frame.h"
+#include "app/output_files.h"
 #include "app/progress.h"
 #include "app/recorder.h"
 #include "app/solid_shapes.h"
+#include "app/surface_series.h"
 #include "core/error.h"
-#include "core/output_file.h"
 #include "core/system.h"
 #include "measure/checkpoint.h"
 #include "measure/health.h"
@@ -26,7 +27,6 @@
 #include <chrono>
 #include <filesystem>
 #include <optional>
-#include <set>
 
 namespace spindrift {
 namespace {
@@ -34,49 +34,6 @@ namespace {
 constexpr int DefaultSteps = 600;
 // Steps between two looks at the health of a run that measures nothing else.
 constexpr int HealthInterval = 20;
-
-struct OutputFormat {
-    std::string Output::*file;
-    std::vector<std::string> extensions;
-};
-const std::vector<OutputFormat>& outputFormats() {
-    static const std::vector<OutputFormat> all = {{&Output::screenshot, {"png"}},
-                                                  {&Output::csv, {"csv"}},
-                                                  {&Output::json, {"json"}},
-                                                  {&Output::hdf5, {"h5", "hdf5", "hdf"}},
-                                                  {&Output::particles, {"csv", "h5"}},
-                                                  {&Output::checkpoint, {"h5", "hdf5", "hdf"}},
-                                                  {&Output::video, {"mp4", "mkv", "webm"}},
-                                                  {&Output::series, {"pvd", "xdmf", "ply", "csv"}}};
-    return all;
-}
-
-// Every output is tried before the first step: an hour of computing must not end at a missing
-// folder. The file that the run is read from is no place for them, but a checkpoint that is named
-// again.
-void requireOutputs(const Output& output, const Start& start) {
-    const std::string source = whereItLeads(start.file);
-    std::set<std::string> places;
-    for (const OutputFormat& format : outputFormats()) {
-        const std::string& file = output.*format.file;
-        if (file.empty()) continue;
-        // A series without an index is a folder alone.
-        if (format.file == &Output::series && !MomentFormat(file).hasIndex()) continue;
-        requireFormat(file, format.extensions);
-        requireWritable(file);
-        const std::string place = whereItLeads(file);
-        if (place.empty()) continue;
-        if (place == source && !(start.state && format.file == &Output::checkpoint))
-            throw Error(Failure::Output,
-                        file + ": can't be written: the run is read from it; name another file");
-        if (!places.insert(place).second)
-            throw Error(Failure::Output,
-                        isStandardOutput(file)
-                            ? "two outputs both want standard output; give one of them a file"
-                            : file + ": two outputs want this file; give each a file of its own");
-    }
-    if (!output.frames.empty()) requireFolder(output.frames);
-}
 
 // What draws; there only when pictures are asked for.
 struct Pictures {
@@ -90,7 +47,7 @@ struct Pictures {
         frame.draw(scene);
         return frame.image();
     }
-    void save(Simulation& simulation, const Scene& scene, const std::string& file) {
+    void save(Simulation& simulation, Scene& scene, const std::string& file) {
         writePng(file, of(simulation, scene));
     }
 };
@@ -138,6 +95,7 @@ public:
         if (!output.series.empty())
             particles_.emplace(scene_, *simulation_, surfacesOf(scene_), now_,
                                1 / double(output.fps));
+        if (!output.surface.empty()) surfaces_.emplace(scene_, now_, 1 / double(output.fps));
         series_.emplace(output, probes_.columns(), simulation_->plan(),
                         start.state ? &now_ : nullptr);
         first_ = steps_ = now_.steps, evaluationsBefore_ = now_.evaluations;
@@ -163,6 +121,7 @@ public:
             tryTo([&] { series_->finish(); });
             tryTo([&] { keepLastGood(); });
             if (particles_) tryTo([&] { particles_->finish(); });
+            if (surfaces_) tryTo([&] { surfaces_->finish(); });
             if (film_) tryTo([&] { film_->finish(); });
             throw;
         }
@@ -300,6 +259,10 @@ private:
             recorders_.push_back({frame, after(particles_->endBefore(), frame),
                                   [this] { particles_->add(*simulation_, now_.time); },
                                   [this](double time) { particles_->dropAfter(time); }});
+        if (surfaces_)
+            recorders_.push_back({frame, after(surfaces_->endBefore(), frame),
+                                  [this] { surfaces_->add(*simulation_, now_.time); },
+                                  [this](double time) { surfaces_->dropAfter(time); }});
         const double checkpoint = asWritten(output.checkpointEvery);
         if (!output.checkpoint.empty() && checkpoint > 0)
             recorders_.push_back({checkpoint, after(now_.time, checkpoint),
@@ -385,6 +348,7 @@ private:
                           massesToSave(scene_, *simulation_), fluidsToSave(scene_, *simulation_));
         if (!output.screenshot.empty()) pictures_->save(*simulation_, scene_, output.screenshot);
         if (particles_) particles_->finish();
+        if (surfaces_) surfaces_->finish();
         if (film_) film_->finish();
         if (!quiet_)
             summarise();
@@ -396,11 +360,7 @@ private:
     void summarise() const {
         const Output& output = scene_.output;
         // Standard output may already belong to an output.
-        const auto& formats = outputFormats();
-        const bool taken = std::any_of(formats.begin(), formats.end(), [&](const auto& f) {
-            return isStandardOutput(output.*f.file);
-        });
-        std::FILE* out = taken ? stderr : stdout;
+        std::FILE* out = takesStandardOutput(output) ? stderr : stdout;
         const double ms = made_ > 0 ? 1000 * stepSeconds_ / double(made_) : 0;
         fmt::print(out, "scene          {}\n", scene_.name);
         fmt::print(out, "device         {}\n", simulation_->deviceName());
@@ -446,6 +406,9 @@ private:
         if (particles_)
             fmt::print(out, "series         {}, {} moments\n", output.series,
                        particles_->moments());
+        if (surfaces_)
+            fmt::print(out, "surfaces       {}, {} moments\n", output.surface,
+                       surfaces_->moments());
     }
 
     Scene scene_;
@@ -470,6 +433,7 @@ private:
     os::StopSignals signals_;  // until a film's reader is gone
     std::optional<Film> film_;
     std::optional<ParticleSeries> particles_;
+    std::optional<SurfaceSeries> surfaces_;
     double filmed_ = -1;  // s, of the film's last frame
     size_t filmFrames_ = 0;
     std::vector<double> frameTimes_;  // s, of the frames written

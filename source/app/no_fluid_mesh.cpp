@@ -5,13 +5,17 @@
 namespace spindrift {
 
 bool canMeshFluid() { return false; }
+void requireFluidMeshes(const std::string& what) {
+    throw Error(Failure::Usage,
+                what +
+                    ": there is no spindrift-surface beside this program; `make build` makes it "
+                    "where OpenVDB is (apt-get install libopenvdb-dev)");
+}
 
 struct FluidLevelSet::Grid {};
 
-FluidLevelSet::FluidLevelSet(const std::vector<Vec3d>&, double, double, int) {
-    throw Error(Failure::Usage,
-                "surface: there is no spindrift-surface beside this program; `make build` makes it "
-                "where OpenVDB is (apt-get install libopenvdb-dev)");
+FluidLevelSet::FluidLevelSet(const std::vector<Vec3d>&, double, const SurfaceMethod&) {
+    requireFluidMeshes("surface");
 }
 FluidLevelSet::~FluidLevelSet() = default;
 FluidMesh FluidLevelSet::mesh(double, double&) const { return {}; }

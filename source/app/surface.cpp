@@ -1,10 +1,9 @@
 #include "app/surface.h"
 
 #include "app/exit_code.h"
-#include "app/fluid_mesh.h"
+#include "app/surface_file.h"
 #include "core/error.h"
 #include "core/output_file.h"
-#include "measure/moment_files.h"
 #include "scene/particle_file.h"
 #include "scene/particle_spacing.h"
 
@@ -13,26 +12,12 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
-#include <fstream>
 #include <set>
 
 namespace spindrift {
 namespace {
 
 namespace fs = std::filesystem;
-
-const std::vector<std::string> Formats = {"ply", "obj", "vdb"};
-
-bool writeObj(const std::string& path, const FluidMesh& mesh) {
-    std::string text = "# written by Spindrift, m\n";
-    const auto out = std::back_inserter(text);
-    for (const Vec3d& p : mesh.points) fmt::format_to(out, "v {} {} {}\n", p.x, p.y, p.z);
-    for (const auto& t : mesh.triangles)
-        fmt::format_to(out, "f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
-    std::ofstream file(path, std::ios::binary);
-    file << text;
-    return bool(file.flush());
-}
 
 // ply, obj or vdb.
 std::string formatOf(const SurfaceOptions& options) {
@@ -41,7 +26,8 @@ std::string formatOf(const SurfaceOptions& options) {
     const std::string format = !options.format.empty() ? options.format
                                : !named.empty()        ? named
                                                        : "ply";
-    if (std::find(Formats.begin(), Formats.end(), format) == Formats.end())
+    const auto& formats = surfaceFormats();
+    if (std::find(formats.begin(), formats.end(), format) == formats.end())
         throw Error(Failure::Usage,
                     fmt::format("surface: \"{}\" is no format; take ply, obj or vdb", format));
     if (!named.empty() && named != format)
@@ -101,32 +87,20 @@ double volumeOf(const ParticleTable& table, double spacing) {
     return volume;
 }
 
-void makeSurface(const std::string& file, const std::string& target, const std::string& format,
+void makeSurface(const std::string& file, const std::string& target,
                  const SurfaceOptions& options) {
     const auto begin = std::chrono::steady_clock::now();
     const ParticleTable table = readParticles(file);
     const double spacing = spacingOf(file, table.positions, options.spacing),
                  volume = volumeOf(table, spacing);
-    const FluidLevelSet distances(table.positions, spacing, options.cell, options.smoothings);
-    double shift = 0;
-    FluidMesh mesh = distances.mesh(volume, shift);
-    if (mesh.triangles.empty())
+    const SurfaceFile surface(table.positions, spacing, volume, options.method);
+    if (surface.triangles() == 0)
         throw Error(Failure::Usage, file + ": no surface was found; is --spacing right?");
-    const size_t triangles = mesh.triangles.size();
-    const double enclosed = mesh.volume;
-    if (format == "ply") {
-        const Piece piece{"surface", std::move(mesh.points), {}, std::move(mesh.triangles)};
-        MomentFormat("surface.ply").write(target, piece);
-    } else {
-        replaceFile(target, [&](const std::string& temporary) {
-            return format == "obj" ? writeObj(temporary, mesh)
-                                   : distances.writeVdb(temporary, shift);
-        });
-    }
+    surface.write(target);
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     fmt::print("{}: {} particles, {} triangles, {:.4g} m^3 of {:.4g}, {:.2g} s\n", target,
-               table.positions.size(), triangles, enclosed, volume, seconds);
+               table.positions.size(), surface.triangles(), surface.volume(), volume, seconds);
 }
 
 }  // namespace
@@ -135,8 +109,7 @@ int makeSurfaces(const SurfaceOptions& options) {
     const std::string format = formatOf(options);
     const std::vector<std::string> targets = targetsOf(options, format);
     for (const std::string& target : targets) requireWritable(target);
-    for (size_t k = 0; k < targets.size(); ++k)
-        makeSurface(options.files[k], targets[k], format, options);
+    for (size_t k = 0; k < targets.size(); ++k) makeSurface(options.files[k], targets[k], options);
     return int(Exit::Ok);
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 // spindrift surface: files of particles, of any program, into surfaces.
+#include "app/fluid_mesh.h"
+
 #include <string>
 #include <vector>
 
@@ -10,8 +12,7 @@ struct SurfaceOptions {
     std::string out;     // a file for one table, a folder for more; "": beside the table
     std::string format;  // ply, obj or vdb; "": as `out` says, else ply
     double spacing = 0;  // of the particles, m; 0: as the particles say
-    double cell = 0.5;   // of the grid, in spacings
-    int smoothings = 3;  // of the distances
+    SurfaceMethod method;
 };
 
 // Throws Error: Scene for a table that can't be read, Usage for a mistake in the options, Output.

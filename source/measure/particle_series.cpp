@@ -52,15 +52,13 @@ ParticleSeries::ParticleSeries(const Scene& scene, Simulation& simulation,
                                std::vector<SolidSurface> surfaces, const Measurement& now,
                                double interval)
     : path_(scene.output.series),
-      folder_(fs::path(path_).replace_extension("").string()),
       format_(path_),
+      folder_(path_, format_.extension(), scene),
       corner_(toDouble(scene.domain.min)),
       fields_(fieldsOf(scene.output.fields)),
       mass_(particleMass(scene)),
       surfaces_(std::move(surfaces)),
       interval_(interval) {
-    requireOwnFolder(scene);
-    requireFolder(folder_);
     // Where particles come and go there is one fluid.
     if (!comesAndGoes(scene))
         for (const uint16_t body : simulation.state().particles.bodies) {
@@ -70,7 +68,7 @@ ParticleSeries::ParticleSeries(const Scene& scene, Simulation& simulation,
         }
     if (!scene.objects.empty()) objects_ = sampleObjects(scene).objects;
     if (now.steps == 0)
-        removeOlder();
+        folder_.remove({"fluid", "solids", "objects"});
     else
         goOn(now.time * (1 + 1e-9));
 }
@@ -81,39 +79,7 @@ void ParticleSeries::goOn(double time) {
     std::erase_if(entries_, [&](const IndexEntry& e) { return e.time > time; });
     if (!entries_.empty()) endBefore_ = entries_.back().time;
     const auto last = size_t(time / interval_);
-    if (!format_.hasIndex() && fs::exists(fileOf("fluid", last)))
-        endBefore_ = double(last) * interval_;
-}
-
-// What the scene begins with must not be written over.
-void ParticleSeries::requireOwnFolder(const Scene& scene) const {
-    std::vector<std::string> inputs;
-    for (const Body& body : scene.fluid.bodies) inputs.push_back(body.path);
-    for (const Solid& solid : scene.solids) inputs.push_back(solid.path);
-    for (const Object& object : scene.objects) inputs.push_back(object.path);
-    std::error_code none;
-    const fs::path own = fs::weakly_canonical(folder_, none);
-    for (const std::string& input : inputs)
-        if (!input.empty() && fs::weakly_canonical(input, none).parent_path() == own)
-            throw Error(Failure::Output,
-                        fmt::format("{}: its folder {} holds {}, which the scene begins with; give "
-                                    "the series another name",
-                                    path_, folder_, input));
-}
-
-void ParticleSeries::removeOlder() const {
-    std::error_code none;
-    for (const auto& entry : fs::directory_iterator(folder_, none)) {
-        const std::string name = entry.path().filename().string();
-        for (const char* piece : {"fluid_", "solids_", "objects_"})
-            if (name.starts_with(piece) && name.ends_with(format_.extension()))
-                fs::remove(entry.path(), none);
-    }
-}
-
-std::string ParticleSeries::fileOf(const std::string& piece, size_t number) const {
-    return (fs::path(folder_) / fmt::format("{}_{:05}{}", piece, number, format_.extension()))
-        .string();
+    if (!format_.hasIndex() && folder_.has("fluid", last)) endBefore_ = double(last) * interval_;
 }
 
 Piece ParticleSeries::fluidOf(const std::vector<Particle>& particles) const {
@@ -171,7 +137,8 @@ PieceFile ParticleSeries::describe(const Piece& piece, size_t number) const {
     PieceFile file;
     file.name = piece.name, file.points = piece.points.size();
     file.triangles = piece.triangles.size();
-    file.file = (fs::path(folder_).filename() / fs::path(fileOf(piece.name, number)).filename())
+    file.file = (fs::path(folder_.path()).filename() /
+                 fs::path(folder_.file(piece.name, number)).filename())
                     .generic_string();
     for (const PointField& f : piece.fields)
         file.fields.push_back({f.name, f.values.index() == 1 ? -f.components : f.components});
@@ -180,7 +147,7 @@ PieceFile ParticleSeries::describe(const Piece& piece, size_t number) const {
 
 PieceFile ParticleSeries::put(Piece piece, size_t number) {
     PieceFile file = describe(piece, number);
-    beside_.add([this, path = fileOf(piece.name, number), piece = std::move(piece)] {
+    beside_.add([this, path = folder_.file(piece.name, number), piece = std::move(piece)] {
         format_.write(path, piece);
     });
     return file;

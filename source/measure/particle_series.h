@@ -3,6 +3,7 @@
 // written beside the run.
 #include "core/beside.h"
 #include "measure/moment_files.h"
+#include "measure/moment_folder.h"
 #include "sim/simulation.h"
 
 #include <chrono>
@@ -37,19 +38,17 @@ public:
 
 private:
     bool hasSolids() const { return !surfaces_.empty() && format_.takesTriangles(); }
-    std::string fileOf(const std::string& piece, size_t number) const;
     Piece fluidOf(const std::vector<Particle>&) const;
     Piece solidsAt(const std::vector<SolidPose>&) const;
     Piece objectsOf(const RunState&) const;
-    void requireOwnFolder(const Scene&) const;
-    void removeOlder() const;
     void goOn(double time);
     PieceFile describe(const Piece&, size_t number) const;
     PieceFile put(Piece, size_t number);
     void writeIndex();
 
-    std::string path_, folder_;
+    std::string path_;
     MomentFormat format_;
+    MomentFolder folder_;
     Vec3d corner_;  // of the domain, world coordinates
     std::vector<std::string> fields_;
     float mass_;                    // kg, of a particle of the one fluid; in 2D kg/m

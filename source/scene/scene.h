@@ -400,8 +400,10 @@ struct Output {
         particles;  // CSV or HDF5 path: the last state, which a body of shape file can begin with
     std::string series;  // path: particles, solids and objects at every frame
     std::string fields = "velocity,density,pressure";  // of the particles in there
-    std::string video;                                 // path: a film of the run
-    bool strict = false;         // what is outside the validity of the method is an error
+    std::string surface;              // path: the surface of the fluid at every frame
+    bool surfaceAnisotropic = false;  // of kernels that lie along it
+    std::string video;                // path: a film of the run
+    bool strict = false;              // what is outside the validity of the method is an error
     bool faceForces = false;     // columns of the series: what fluid does to the domain's faces
     bool energyBalance = false;  // columns of the series: where energy comes from and goes to
     std::vector<Probe> probes;

@@ -401,6 +401,14 @@ template <class S, class Visitor> void visitOutput(S& s, Visitor&& visit) {
                "of particles in output.series: velocity, acceleration, density, pressure, mass, "
                "fluid",
                Restart});
+    visit("output.surface", o.surface,
+          Knob{"", 0, 0,
+               "the surface of the fluid at every frame, by output.fps, as triangles (.ply, .obj) "
+               "or as a level set (.vdb); files are in a folder of that name",
+               Restart});
+    visit("output.surface_anisotropic", o.surfaceAnisotropic,
+          Knob{"", 0, 0, "of kernels that are flat along the surface: smoother, for twice the time",
+               Restart});
     visit("output.video", o.video,
           Knob{"", 0, 0,
                "film of the run, .mp4, .mkv or .webm, made by ffmpeg; output.fps frames a second "
