@@ -44,18 +44,13 @@ double couetteFlow(double y, double t, double L, double nu, double V) {
     return u;
 }
 
-double OscillatingDrop::pressure() const {
-    const double a2 = a * a, b2 = 1 / a2;
-    return (rate * rate + pull) / (a2 + b2);
-}
-
 void OscillatingDrop::advance(double dt) {
     struct State {
         double a, rate;
     };
-    auto slope = [this](State s) -> State {
+    auto slope = [](State s) -> State {
         const double a2 = s.a * s.a, b2 = 1 / a2;  // the area stays
-        return {s.rate * s.a, (s.rate * s.rate + pull) * (b2 - a2) / (a2 + b2)};
+        return {s.rate * s.a, (s.rate * s.rate + 1) * (b2 - a2) / (a2 + b2)};
     };
     auto along = [](State s, double h, State d) -> State {
         return {s.a + h * d.a, s.rate + h * d.rate};

@@ -25,8 +25,6 @@ double couetteFlow(double y, double t, double L, double nu, double V);
 // -Omega^2 r, Omega = 1/s: an ellipse at all times (Monaghan and Rafiee 2013, appendix A).
 struct OscillatingDrop {
     double a = 1, rate = 1;                     // m, semi-axis along x; 1/s, its relative growth
-    double pull = 1;                            // 1/s², Omega²; 0: free (Monaghan 1994)
-    double pressure() const;                    // m²/s², in its middle, over rho
     static constexpr double period = 4.827343;  // s, of both
     void advance(double dt);                    // s
 };

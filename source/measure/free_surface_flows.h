@@ -6,7 +6,6 @@
 namespace spindrift {
 
 void runDrop(const Scene&, ValidationRun&);
-void runStretchedDrop(const Scene&, ValidationRun&);
 // Small oscillations that viscosity damps: of a standing wave, of a drop; a disc that turns as a
 // solid, in which nothing may happen; a film that flows down an incline (Nusselt 1916).
 void runViscousWave(const Scene&, ValidationRun&);

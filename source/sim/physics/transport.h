@@ -21,24 +21,16 @@ namespace spindrift::LANES {
 // corrected: the plain one takes particles that lose their order for denser fluid, which expands,
 // and shifting orders them again, round after round. So still water swelled, and each change of the
 // order was a blow (note 009).
-// A carried density knows nothing of where particles are; what is torn and falls together again
-// would keep the room that it was torn to (a tank that a jet had filled stood a third too high). So
-// where neighbours are all around, a density that is off from the sum over them by more than a
-// hundredth, which disorder and compression make of it, is drawn there, in a hundred times what
-// sound takes through a support.
 template <class Kernel, bool surface> struct ComputeTransport {
     using Index = ICluster;
     using R = Real<ICluster>;
     struct Parameters {
         real shifting;     // shift velocity per largest speed, m
         real atNeighbour;  // 1 / w at the distance of neighbours on the lattice
-        real tie;          // 1/s, of densities to the sums over neighbours
-        real spacing;      // m
         real viscosity;    // Pa s, for the kernel's own sums of Laplacians
         static Parameters of(const Model& m) {
             const Fluid& f = m.scene->fluid;
             return {real(f.shifting * 2 * m.h()), 1 / m.atNeighbour,
-                    real(0.01 * m.sound / m.support()), real(m.scene->simulation.spacing),
                     real(0.5) * viscousScale<ViscosityForm::Morris>(m, f.viscosity)};
         }
     };
@@ -49,7 +41,6 @@ template <class Kernel, bool surface> struct ComputeTransport {
         Vector<R> u, v, w, rho;  // weighted r times the differences of each: gradients
         Vector<R> concentrationGradient, shift;
         R laplacian;  // of the density
-        R weight;     // that it is summed up from
         HD void add(R weight, Vector<R> r, Vector<R> velocity, R density, R excess, R crowding) {
             const Vector<R> wr = weight * r;
             moments = addOuter(moments, weight, r);
@@ -73,7 +64,6 @@ template <class Kernel, bool surface> struct ComputeTransport {
                 s.add(slopeOf<Kernel>(v.c, p.q) * load(v.fluid.inverseDensity, j), p.r,
                       load(v.fluid.velocity, j) - velocity, more,
                       surface ? more + dot(slope, p.r) : more, crowding(p.q));
-                if constexpr (surface) s.weight += valueOf<Kernel>(v.c, p.q);
             });
         forNeighbours<Lists::Inner>(
             v, v.wallsNearFluid, i, x, [&](const auto& p, JCluster j) LANE_CALL {
@@ -81,8 +71,6 @@ template <class Kernel, bool surface> struct ComputeTransport {
                 s.add(slopeOf<Kernel>(v.c, p.q) * load(v.walls.mass, j) * perRest, p.r,
                       flowVelocity(v.walls, j) - velocity, more, surface ? R(0) : more,
                       crowding(p.q));
-                if constexpr (surface)
-                    s.weight = mulAdd(load(v.walls.mass, j), valueOf<Kernel>(v.c, p.q), s.weight);
             });
         finish(i, rho, s);
     }
@@ -122,25 +110,11 @@ template <class Kernel, bool surface> struct ComputeTransport {
             const R plain = scale * total(s.u.x + s.v.y + s.w.z);
             divergence = mulAdd(inside, corrected - plain, plain);
         }
-        R rate = inside * dot(shift, gradRho) - rho * divergence;
-        if constexpr (surface)
-            rate += surrounded(inward, correction.determinant) * tied(rho, total(s.weight));
+        const R rate = inside * dot(shift, gradRho) - rho * divergence;
         store(v.fluid.densityRate, i, mulAdd(half * R(v.c.diffusion), diffused, rate));
         store(v.fluid.shiftVelocity, i, shift);
         store(v.fluid.shiftAcceleration, i,
               Vector<R>{dot(along, gradU), dot(along, gradV), dot(along, gradW)});
-    }
-    // 1 with neighbours all around, however far apart, 0 where they are missing on a side.
-    HD R surrounded(Vector<R> inward, R determinant) const {
-        const R away = R(own.spacing) * squareRoot(dot(inward, inward));
-        return (R(1) - between(real(0.01), real(0.03), away)) *
-               between(real(0.2), real(0.35), determinant);
-    }
-    // kg/(m^3 s)
-    HD R tied(R rho, R weight) const {
-        const R off = R(v.c.kernelScale) * weight - rho;
-        const R most = real(0.01) * v.c.restDensity;
-        return R(own.tie) * (off - min(max(off, R(0) - most), most));
     }
     // 0 below `low`, 1 above `high`, smooth in between.
     HD static R between(real low, real high, R value) {

@@ -74,24 +74,6 @@ TEST(Exact, DropComesBackAfterItsPeriod) {
     EXPECT_NEAR(most, 1.931852, 1e-4);
 }
 
-// A free drop keeps its kinetic energy, rate^2 (a^2 + b^2), and what pressure does to it is the
-// change of its motion: rate' + rate^2 = 2 p / a^2 along it, rate^2 - rate' = 2 p / b^2 across.
-TEST(Exact, FreeDropKeepsItsEnergyAndIsMovedByItsPressure) {
-    OscillatingDrop drop;
-    drop.pull = 0;
-    for (int k = 0; k < 100; ++k) {
-        const double energy = drop.rate * drop.rate * (drop.a * drop.a + 1 / (drop.a * drop.a));
-        EXPECT_NEAR(energy, 2, 1e-6);
-        OscillatingDrop later = drop;
-        later.advance(1e-5);
-        const double change = (later.rate - drop.rate) / 1e-5, square = drop.rate * drop.rate;
-        EXPECT_NEAR(square + change, 2 * drop.pressure() / (drop.a * drop.a), 1e-4);
-        EXPECT_NEAR(square - change, 2 * drop.pressure() * drop.a * drop.a, 1e-4);
-        drop.advance(0.01);
-    }
-    EXPECT_GT(drop.a, 2);
-}
-
 // Where viscosity is weak all is lost where potential flow shears: 2 nu k^2 of waves on deep water,
 // 2 n (n - 1) nu / R^2 of drops (Lamb 1932); what vorticity below the surface changes goes with the
 // root of the viscosity.
