@@ -143,7 +143,7 @@ private:
     template <class F> static void tryTo(const F& f) {
         try {
             f();
-        } catch (const Error&) {}
+        } catch (...) {}  // the first trouble is what is told
     }
     bool done() const {
         const double time = asWritten(scene_.output.time);

@@ -203,6 +203,7 @@ void setKnob(Scene& scene, const std::string& assignment, const std::string& ori
         Json root;
         placeFor(root, path) = value;
         readScene(root, changed, place);
+        requireOneOfRatesAndFile(changed, origin);
         readTables(changed, "", origin);
         scene = changed;
         return;

@@ -78,11 +78,18 @@ class Checks:
             os.killpg(process.pid, signal.SIGKILL)
             return None, ""
 
+    def within(self, limit, command, **how):
+        """As start(). What the budget cuts off is skipped; what hangs or isn't there fails."""
+        given = min(limit, max(self.left(), 1))
+        code, text = self.start(command, given, **how)
+        if code is None and not text and given < limit:
+            raise Skipped(f"not done after {given:.0f} s")
+        if code is None:
+            raise Checks.Error(text or f"not done after {given:.0f} s")
+        return code, text
+
     def run(self, command, limit=120, wanted=0, **how):
-        limit = min(limit, max(self.left(), 1))
-        code, text = self.start(command, limit, **how)
-        if code is None and not text:
-            raise Skipped(f"not done after {limit:.0f} s")
+        code, text = self.within(limit, command, **how)
         if code != wanted:
             raise Checks.Error(f"exit code {code}: {text.strip()[-300:]}")
         return text
@@ -90,10 +97,7 @@ class Checks:
     def tests(self, pattern, emulated=None, program="cuda_tests", **environment):
         """Tests by their pattern, those that the emulated GPU has time for."""
         pattern = emulated if self.emulated and emulated else pattern
-        limit = min(180, max(self.left(), 1))
-        code, text = self.start([program, f"--gtest_filter={pattern}"], limit, **environment)
-        if code is None:
-            raise Skipped(f"not done after {limit:.0f} s")
+        code, text = self.within(180, [program, f"--gtest_filter={pattern}"], **environment)
         counts = {word: int(n) for word, n in re.findall(r"\[\s*(PASSED|SKIPPED|FAILED)\s*\] (\d+) tests?", text)}
         failed = re.findall(r"\[  FAILED  \] ([\w/.]+) \(", text)
         if code != 0 or counts.get("PASSED", 0) == 0:

@@ -301,7 +301,7 @@ TEST(LookingBack, RunGoesOnFromAnyMomentWithTheBitsThatItHad) {
 // What a history keeps nothing of for want of room is said as that, whenever it is asked for.
 TEST(LookingBack, SaysWhyThereIsNothing) {
     for (const float budget : {0.0f, 0.001f}) {
-        Scene scene = loadScene(Configs + "dam_break.json");
+        Scene scene = loadScene(Configs + "dam_break_small.json");
         scene.view.history = budget;
         Player player(ready(scene));
         ASSERT_TRUE(play(player, [&] { return player.measurement().steps > 40; }));

@@ -201,7 +201,7 @@ TEST(Sources, SayOnceHowMuchTheyGive) {
     const TableFile file("t,flow\n0,1\n");
     const std::string path = "\"path\":\"" + file.path.string() + "\"";
     const auto sceneOf = [](const std::string& source) {
-        return parseScene(R"({"version":1,"sources":[{)" + source + "}]}", "here");
+        return parseScene(R"({"version":2,"sources":[{)" + source + "}]}", "here");
     };
     for (const std::string rates : {R"("velocities":[[0,1]])", R"("flows":[[0,2]])"})
         for (const std::string& both : {rates + "," + path, path + "," + rates}) try {
@@ -212,6 +212,7 @@ TEST(Sources, SayOnceHowMuchTheyGive) {
                           std::string::npos)
                     << error.what();
             }
+    EXPECT_THROW(sceneWith({R"(sources=[{"velocities":[[0,1]],)" + path + "}]"}), Error);
     Scene scene = sceneOf(R"("velocities":[[0,1]])");
     setKnob(scene, "sources[0].path=" + file.path.string());
     EXPECT_TRUE(scene.sources[0].velocities.empty());
