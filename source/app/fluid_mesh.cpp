@@ -1,7 +1,9 @@
 #include "app/fluid_mesh.h"
 
 #include "app/stretched_kernels.h"
+#include "core/error.h"
 
+#include <fmt/format.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/points/PointConversion.h>
 #include <openvdb/points/PointRasterizeSDF.h>
@@ -15,7 +17,15 @@
 namespace spindrift {
 
 bool canMeshFluid() { return true; }
-void requireFluidMeshes(const std::string&) {}
+// OpenVDB takes a transform whose determinant is below 3e-15 for one that can't be inverted.
+void requireFluidMeshes(const std::string& what, double cell) {
+    constexpr double smallest = 1.5e-5;
+    if (cell < smallest)
+        throw Error(Failure::Usage,
+                    fmt::format("{}: its grid would have cells of {:.3g} m, and {:.3g} m are the "
+                                "smallest; write particles, or give lengths in another unit",
+                                what, cell, smallest));
+}
 
 struct FluidLevelSet::Grid {
     openvdb::FloatGrid::Ptr distances;
@@ -93,9 +103,10 @@ FluidLevelSet::FluidLevelSet(const std::vector<Vec3d>& particles, double spacing
                              const SurfaceMethod& method)
     : grid_(std::make_unique<Grid>()),
       farthest_(std::min(0.45, 0.9 * Band * method.cell) * spacing) {
+    const double cell = method.cell * spacing;
+    requireFluidMeshes("surface", cell);
     openvdb::initialize();
     const std::vector<openvdb::Vec3d> places = pointsOf(particles);
-    const double cell = method.cell * spacing;
     grid_->distances = method.anisotropic ? stretchedKernels(places, spacing, cell)
                                           : smoothSpheres(places, spacing, cell);
     openvdb::tools::Filter<openvdb::FloatGrid> filter(*grid_->distances);

@@ -28,16 +28,15 @@ struct SurfaceMethod {
 
 // Whether this program can; spindrift-surface can.
 bool canMeshFluid();
-// Throws Error (Usage) where it can't; `what` can't be made then.
-void requireFluidMeshes(const std::string& what);
+// Throws Error (Usage) where it can't, or not with cells so small, m; `what` can't be made then.
+void requireFluidMeshes(const std::string& what, double cell);
 
 // How far places are from the fluid's surface. Particles are smoothed spheres (Zhu & Bridson 2005),
 // so that flat fluid has a flat surface and drops are round, or anisotropic kernels; where it lies
 // exactly is chosen so that it encloses the fluid's volume.
 class FluidLevelSet {
 public:
-    // Places and spacing of the particles in m. Throws Error (Usage) where this program has no
-    // OpenVDB.
+    // Places and spacing of the particles in m. Throws as requireFluidMeshes() does.
     FluidLevelSet(const std::vector<Vec3d>& particles, double spacing, const SurfaceMethod&);
     ~FluidLevelSet();
     // Closed, and of this volume, m^3, as far as a shift of less than half a spacing reaches.

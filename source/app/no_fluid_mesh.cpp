@@ -5,7 +5,7 @@
 namespace spindrift {
 
 bool canMeshFluid() { return false; }
-void requireFluidMeshes(const std::string& what) {
+void requireFluidMeshes(const std::string& what, double) {
     throw Error(Failure::Usage,
                 what +
                     ": there is no spindrift-surface beside this program; `make build` makes it "
@@ -15,7 +15,7 @@ void requireFluidMeshes(const std::string& what) {
 struct FluidLevelSet::Grid {};
 
 FluidLevelSet::FluidLevelSet(const std::vector<Vec3d>&, double, const SurfaceMethod&) {
-    requireFluidMeshes("surface");
+    requireFluidMeshes("surface", 0);
 }
 FluidLevelSet::~FluidLevelSet() = default;
 FluidMesh FluidLevelSet::mesh(double, double&) const { return {}; }

@@ -27,7 +27,7 @@ std::string extensionOf(const Scene& scene) {
     if (scene.simulation.dimensions == 2)
         throw Error(Failure::Scene,
                     "output.surface: a surface needs three dimensions; leave it out");
-    requireFluidMeshes(path);
+    requireFluidMeshes(path, SurfaceMethod{}.cell * scene.simulation.spacing);
     return extension;
 }
 

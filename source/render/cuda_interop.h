@@ -30,7 +30,7 @@ public:
 
     // Device memory for work on this stream, a cudaStream_t, until unmap(); GL must not touch the
     // buffer in between. That work comes behind GL's reading of the last picture, GL's next behind
-    // that work; nobody waits.
+    // that work, without waiting for it.
     Vertex* map(void* stream);
     void unmap();
 

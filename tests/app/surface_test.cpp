@@ -316,6 +316,11 @@ TEST_F(SurfacesOfRuns, OfNoFluidAreEmpty) {
 TEST_F(SurfacesOfRuns, MistakesAreNamedBeforeItStarts) {
     expectMistake(run_ + "--surface water.stl", Exit::Output, "name it .ply, .obj or .vdb");
     expectMistake(run_ + "--surface water", Exit::Output, "name it .ply, .obj or .vdb");
+    expectMistake(run_ +
+                      "--surface water.ply --set simulation.spacing=2e-5 "
+                      "--set domain.max=1e-3,1e-3,1e-3 "
+                      "--set 'fluid.bodies=[{\"min\":[0,0,0],\"max\":[4e-4,4e-4,4e-4]}]'",
+                  Exit::Usage, "are the smallest");
     write("notes", "mine");
     expectMistake(run_ + "--surface notes.ply", Exit::Output, "notes");
     expectMistake("poiseuille --headless --backend cpu --quiet --surface water.ply", Exit::Scene,

@@ -84,6 +84,15 @@ Difference difference(const Scene& scene, Simulation& a, Simulation& b) {
     return d;
 }
 
+void expectTheSameStep(const Scene& scene, Simulation& cpu, Simulation& gpu) {
+    cpu.step(), gpu.step();
+    const Difference d = difference(scene, cpu, gpu);
+    EXPECT_LT(d.position, 1e-5);
+    EXPECT_LT(d.density, 1e-5);
+    EXPECT_LT(d.pressure, 1e-5);
+    EXPECT_NEAR(cpu.measure().dt, gpu.measure().dt, 1e-5 * cpu.measure().dt);
+}
+
 class Backends : public testing::TestWithParam<const char*> {};
 
 TEST_P(Backends, OneStepFromTheSameStateAgreesToRounding) {
@@ -93,12 +102,7 @@ TEST_P(Backends, OneStepFromTheSameStateAgreesToRounding) {
     before->step(40);  // no longer a lattice
     const RunState state = before->state();
     auto cpu = onCpu(scene, state), gpu = onGpu(scene, state);
-    cpu->step(), gpu->step();
-    const Difference d = difference(scene, *cpu, *gpu);
-    EXPECT_LT(d.position, 1e-5);
-    EXPECT_LT(d.density, 1e-5);
-    EXPECT_LT(d.pressure, 1e-5);
-    EXPECT_NEAR(cpu->measure().dt, gpu->measure().dt, 1e-5 * cpu->measure().dt);
+    expectTheSameStep(scene, *cpu, *gpu);
     EXPECT_GT(gpu->measure().time, state.clock.time);
 }
 
@@ -117,12 +121,7 @@ TEST(LargeScene, OneStepAgreesToRounding) {
     before.reset();
     auto cpu = onCpu(scene, state, 0), gpu = onGpu(scene, state);
     EXPECT_GT(gpu->fluidCount(), 0.9 * particles);
-    cpu->step(), gpu->step();
-    const Difference d = difference(scene, *cpu, *gpu);
-    EXPECT_LT(d.position, 1e-5);
-    EXPECT_LT(d.density, 1e-5);
-    EXPECT_LT(d.pressure, 1e-5);
-    EXPECT_NEAR(cpu->measure().dt, gpu->measure().dt, 1e-5 * cpu->measure().dt);
+    expectTheSameStep(scene, *cpu, *gpu);
 }
 
 // As many iterations lead to the same pressures.

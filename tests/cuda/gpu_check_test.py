@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""gpu_check_test.py BUILD FOLDER: gpu_check.py over the emulated GPU of BUILD/emulated, half a minute. Every check has to be
-made that needs no tool of NVIDIA's, what was found to be written when it is cut off, and what a budget leaves no time for to
-be skipped."""
+"""gpu_check_test.py BUILD FOLDER: gpu_check.py over the emulated GPU of BUILD/emulated, half a
+minute. Every check has to be made that needs no tool of NVIDIA's, what was found to be written when
+it is cut off and to stay when it is run again, and what a budget leaves no time for to be
+skipped."""
 import glob
 import json
 import os
@@ -14,7 +15,8 @@ check = [sys.executable, os.path.join(os.path.dirname(os.path.abspath(__file__))
 
 
 def rows():
-    (file,) = glob.glob(f"{folder}/*-gpu.jsonl")
+    """Of the last run."""
+    file = max(glob.glob(f"{folder}/*-gpu*.jsonl"), key=os.path.getmtime)
     return [json.loads(line) for line in open(file)][1:]
 
 
@@ -24,16 +26,18 @@ def expect(right, what):
 
 
 os.makedirs(folder, exist_ok=True)
-for old in glob.glob(f"{folder}/*-gpu.*"):
+for old in glob.glob(f"{folder}/*-gpu*"):
     os.remove(old)
 code = subprocess.run(check).returncode
 found = rows()
 expect(code == 0, f"exit code {code}")
 missing = ("compute-sanitizer", "ncu")
-expect(all(row["outcome"] == "passed" or any(tool in row["detail"] for tool in missing) for row in found),
+expect(all(row["outcome"] == "passed" or any(tool in row["detail"] for tool in missing) for row
+           in found),
        "a check was skipped that the emulated GPU can do")
 (text,) = glob.glob(f"{folder}/*-gpu.md")
-expect(all(f"{row['outcome']}: {row['check']}" in open(text).read() for row in found), "the text lacks a check")
+expect(all(f"{row['outcome']}: {row['check']}" in open(text).read() for row in found),
+       "the text lacks a check")
 
 expect(subprocess.run([*check, "--budget", "0"]).returncode == 0, "a spent budget is no failure")
 expect([row["check"] for row in rows()] == [row["check"] for row in found], "checks are missing")
@@ -42,4 +46,6 @@ expect(all(row["detail"] == "no time left" for row in rows()), "something ran wi
 with subprocess.Popen(check, stdout=subprocess.PIPE, text=True) as cut:
     cut.stdout.readline()   # the first check is done
     cut.kill()
-expect(rows() and rows()[0] | {"seconds": 0} == found[0] | {"seconds": 0}, "what was found before the end is lost")
+expect(len(glob.glob(f"{folder}/*-gpu*.md")) == 3, "a run has taken away what another had found")
+expect(rows() and rows()[0] | {"seconds": 0} == found[0] | {"seconds": 0},
+       "what was found before the end is lost")

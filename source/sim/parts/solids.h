@@ -76,8 +76,10 @@ public:
         keepMasses(flow_.walls.view());
         moves_ = true;
         flow_.walls.accelerate();
-        flow_.search.sortWalls(
-            flow_.walls);  // into the order that they have: makes room for others
+        // Into the order that they have: makes room for others. A particle on the face of a cell
+        // may change sides by a rounding.
+        flow_.search.sortWalls(flow_.walls);
+        flow_.search.outdate();
         return true;
     }
     // How those that float or are dragged move; not owned.

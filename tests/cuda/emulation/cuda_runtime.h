@@ -4,7 +4,7 @@
 // GPU where that finds bugs:
 // - device memory can be touched by kernels and copies only; the host, and whoever runs off its
 // end, crashes;
-// - work is done when somebody waits for it, not when it is asked for; copies to and from memory
+// - work is done when it is waited for, not when it is asked for; copies to and from memory
 // that is not pinned are waited for, as a GPU may do;
 // - fresh memory is full of NaNs;
 // - threads run one after the other, in either order (emulation.h), so that a result that depends
